@@ -22,7 +22,7 @@ export namespace aabblab {
 /// @throws aabb::input_error like `bytes_of_file`, and if the file is not such text.
 [[nodiscard]] std::string text_of_file(const std::filesystem::path& file);
 
-/// Also reads pipes and devices, up to one byte beyond `most`, so that the caller can detect that the text is too long.
+/// Reads files, pipes and devices, up to one byte beyond `most`, so that the caller can detect too long a text.
 /// @throws aabb::input_error also if a named pipe has no writer.
 [[nodiscard]] std::string text_of_file(const std::filesystem::path& file, std::size_t most);
 

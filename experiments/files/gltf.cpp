@@ -15,8 +15,7 @@ namespace {
 /// The topology of a primitive, by its code in the format.
 enum class gltf_mode : std::uint8_t { points, lines, line_loop, line_strip, triangles, triangle_strip, triangle_fan };
 
-/// The product of two affine transforms of three rows: it applies `child` first. The first three columns are the
-/// linear part, the last one is the translation.
+/// The product of two affine transforms, `child` first; the last of their columns is the translation.
 gltf_matrix combined(const gltf_matrix& parent, const gltf_matrix& child) {
     gltf_matrix transform;
     for (int column = 0; column < 4; ++column)
@@ -53,8 +52,7 @@ private:
         return gltf_element(file_, asset_.accessors, "accessors", index);
     }
 
-    /// Computes the world transform of each node of the scene by a depth-first walk, and rejects nodes that occur
-    /// twice, as in a cycle.
+    /// Computes the world transform of each node depth first, and rejects nodes that occur twice, as in a cycle.
     /// @returns the indices of the nodes in preorder, children in file order
     [[nodiscard]] std::vector<std::size_t> placed_nodes() {
         struct waiting_node {
@@ -143,8 +141,7 @@ private:
         return matrices;
     }
 
-    /// Adds the offsets of each morph target, times its weight, to the positions (x, y, z of each vertex in turn).
-    /// @param mesh its path in the file, for messages
+    /// Adds the weighted offsets of each morph target to the positions (x, y, z of each vertex in turn).
     void morph(std::vector<double>& points, const gltf_primitive& primitive, const std::vector<double>& weights,
                const std::string& mesh) const {
         const auto is_zero = [](double weight) { return weight == 0; };
@@ -169,8 +166,7 @@ private:
         std::vector<double> joints;
         std::vector<double> weights;
     };
-    /// Which joints move each vertex of a primitive, by which weights. The format has them in sets of four per vertex:
-    /// the accessor JOINTS_n with joint numbers, and WEIGHTS_n with a weight for each.
+    /// The joints that move each vertex, and their weights, in sets of four: the accessors JOINTS_n and WEIGHTS_n.
     /// @param vertices the number of positions, which both accessors must match
     [[nodiscard]] std::vector<bindings> bindings_of(const gltf_primitive& primitive, std::size_t vertices,
                                                     const std::string& mesh) const {
@@ -197,8 +193,7 @@ private:
         return sets;
     }
 
-    /// Linear blend skinning: moves the point p of a vertex by the matrix of each of its joints, and returns the mean
-    /// of these positions by the vertex's weights.
+    /// Linear blend skinning: the mean, by weights, of the images of p under the matrices of its joints.
     [[nodiscard]] Eigen::Vector3d skinned(const Eigen::Vector3d& p, std::size_t vertex,
                                           const std::vector<bindings>& sets, const std::vector<gltf_matrix>& joints,
                                           const std::string& mesh) const {
@@ -222,8 +217,7 @@ private:
         return sum / weights;
     }
 
-    /// Adds the vertices of a primitive in world coordinates, after morphing and skinning. Returns their number.
-    /// @param joints the skinning matrices of the node; empty if it has no skin
+    /// Adds a primitive's vertices in world coordinates, and returns their number; `joints` is empty without a skin.
     std::size_t add_vertices(const gltf_primitive& primitive, const gltf_node& node,
                              const std::vector<gltf_matrix>& joints, const std::string& mesh_name) {
         std::vector<double> points = positions(*primitive.positions, /*no_view_means_zeros=*/false);
@@ -276,9 +270,8 @@ private:
         }
     }
 
-    /// Adds the triangles of a primitive. Points, lines and one or two corners that remain at the end count as dropped
-    /// faces, which the report names.
-    /// @param corners vertex indices, whose meaning depends on the mode: three per triangle, a strip or a fan
+    /// Adds the triangles of a primitive. Points, lines and corners that remain at the end count as dropped faces.
+    /// @param corners vertex indices, by mode: three per triangle, a strip or a fan
     void add_faces(gltf_mode mode, const std::vector<std::uint32_t>& corners) {
         const std::size_t count = corners.size();
         const auto add = [&](std::size_t a, std::size_t b, std::size_t c) {

@@ -123,9 +123,8 @@ public:
           name_(gltf_path("accessors", accessor)),
           accessor_(gltf_element(file, asset.accessors, "accessors", accessor)) {}
 
-    /// Reads all numbers of the accessor. It has elements in a buffer view, or else zeros; a sparse accessor then
-    /// replaces some of them.
-    /// @param no_view_means_zeros whether an accessor with neither is all zeros; otherwise it is rejected, as its data
+    /// Reads the numbers of the accessor: elements of a buffer view, or zeros; a sparse accessor replaces some.
+    /// @param no_view_means_zeros whether an accessor without data is all zeros; otherwise it is rejected, as its data
     /// may be where only an extension finds it
     [[nodiscard]] std::vector<double> read(bool no_view_means_zeros) const {
         const gltf_accessor& a = accessor_;

@@ -46,8 +46,7 @@ gltf_sparse::part part_of(const object& part) {
     return {part.needed_index("bufferView"), part.index("byteOffset").value_or(0)};
 }
 
-/// Parses an accessor, which says where numbers are in a buffer view, of which type and how many; a sparse one also
-/// lists elements that it replaces.
+/// Parses an accessor: place, type and number of elements in a buffer view; a sparse one lists replaced ones.
 gltf_accessor accessor_of(const object& accessor) {
     gltf_accessor parsed{.view = accessor.index("bufferView"),
                          .offset = accessor.index("byteOffset").value_or(0),
@@ -72,8 +71,7 @@ std::vector<std::size_t> numbered_attributes(const object& attributes, const std
     return accessors;
 }
 
-/// Parses a primitive, the part of a mesh with one material. Reads only what determines its surface: the indices of the
-/// accessors of positions, skinning and corners, and its mode.
+/// Parses what determines the surface of a primitive: accessors of positions, skinning and corners, and its mode.
 gltf_primitive primitive_of(const object& primitive) {
     gltf_primitive parsed;
     if (const auto attributes = primitive.member("attributes")) {

@@ -111,8 +111,7 @@ struct line_stream::state {
     state() = default;
     state(const std::filesystem::path& file, const std::string& name) : source(file, name) {}
 
-    /// Reads another block of bytes and appends it to `text`, decoded. Sets `has_ended` at the end of the input, or if
-    /// the bytes are not text.
+    /// Appends a decoded block to `text`. Sets `has_ended` at the end of the input, or if it is not text.
     void read_block() {
         block.clear();
         has_ended = !source.read(most_at_once, block);
@@ -131,8 +130,7 @@ line_stream::line_stream(const std::filesystem::path& file, const std::string& n
 line_stream::~line_stream() = default;
 line_stream::line_stream(line_stream&&) noexcept = default;
 
-/// Advances to the next line; false after the last. The line begins at offset `next_line` of the decoded text. Blocks
-/// are read until the text has the line's end, and earlier lines are discarded to bound memory.
+/// Advances to the next line, at offset `next_line`; false after the last. Earlier lines are discarded to bound memory.
 bool line_stream::next() {
     state& s = *state_;
     ++s.line_number;

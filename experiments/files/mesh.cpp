@@ -66,8 +66,7 @@ std::string mesh_report::text() const {
     return line;
 }
 
-/// Reads a mesh in the format that the file's extension names. The bytes tell whether the file is text or binary; text
-/// is converted to UTF-8 with line feeds before it is parsed.
+/// Reads a mesh in the format of the file's extension. Its bytes show whether it is text, which is decoded first.
 loaded_mesh read_mesh(const std::filesystem::path& file) {
     const std::size_t size = require_file(file);
     const std::string ending = mesh_ending_of(file);

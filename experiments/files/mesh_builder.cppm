@@ -61,9 +61,8 @@ public:
             add_face(corners, location);
     }
 
-    /// Counts statements or elements that are not read, by name, as the user may miss the surface that they describe.
-    /// The report names only the first few, so that a strange file does not fill it.
-    /// @param kind "statement" or "element"
+    /// Counts statements or elements (`kind`) that are not read, by name, as they may describe surface. The report
+    /// names only the first few, so that a strange file does not fill it.
     void report_skipped(std::string_view kind, std::string_view name, std::size_t count) {
         constexpr std::size_t most_names = 8;
         auto& skipped = loaded_.report.skipped;
@@ -108,8 +107,7 @@ private:
         std::size_t location;
     };
 
-    /// Triangulates the polygons of more than three corners. `add_face` has stored each as a fan of triangles before
-    /// its vertices were known; the fan of a concave polygon is replaced here.
+    /// Triangulates polygons: the fans that `add_face` has stored before vertices were known may be concave.
     void cut_polygons(std::string_view location_prefix) {
         polygon_cutter cutter;
         for (const polygon& p : polygons_) {
@@ -133,7 +131,6 @@ private:
 
     /// Moves vertices that are not finite, and that no face uses, onto a used one, as removing them would change the
     /// indices of others. Rejects the mesh if a face uses one.
-    /// @param first_index as in `finish`
     void move_unused_vertices(std::size_t first_index) {
         if (not_finite_.empty()) return;
         aabb::mesh& m = loaded_.mesh;

@@ -35,8 +35,7 @@ class motion_reader {
 public:
     explicit motion_reader(const file_text& file) : in_(file, /*comment=*/'#') {}
 
-    /// Reads all lines, "frame object" and a pose each, which must be in the order of frames. Frame 0 must have all
-    /// objects; later frames have those that move.
+    /// Reads lines "frame object" and a pose, by frame. Frame 0 must have all objects, later ones those that move.
     [[nodiscard]] std::vector<step> read() {
         while (in_.next_line()) {
             const auto frame = in_.integer<std::uint32_t>("the number of a frame");

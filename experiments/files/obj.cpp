@@ -12,8 +12,7 @@ class statement_words {
 public:
     explicit statement_words(text_scanner& in) : in_(in) {}
 
-    /// The next word of the statement; empty after the last one. If its line ends in a backslash, which is not part of
-    /// the word, the statement continues on the next line.
+    /// The next word of the statement; empty after the last. A backslash at a line's end continues the statement.
     [[nodiscard]] std::string_view next() {
         for (;;) {
             if (is_continued_ && !in_.next_line()) in_.fail_at_end("after a backslash");
@@ -54,8 +53,7 @@ constexpr std::string_view without_surface[] = {
 
 }  // namespace
 
-/// Reads the vertices ("v") and faces ("f") of OBJ. Other statements are skipped, and the mesh's report names those
-/// that may describe surface.
+/// Reads vertices ("v") and faces ("f"). The report names skipped statements that may describe surface.
 loaded_mesh read_obj(const file_text& file) {
     text_scanner in(file, /*comment=*/'#');
     mesh_builder mesh(file.name);

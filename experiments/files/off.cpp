@@ -102,7 +102,7 @@ private:
             in_.fail_at_end(where());
         const std::size_t line = in_.line();
         const auto corners = in_.integer<std::uint32_t>("the number of corners of a face");
-        // A missing or extra number would shift all that follow, and accepting smaller faces would hide that.
+        // A missing or extra number would shift the following ones, and accepting smaller faces would hide that.
         if (arrangement_ != arrangement::lines && corners < 3) in_.fail("expected at least three corners of a face");
         corners_.clear();
         for (std::uint32_t i = 0; i < corners; ++i) {
@@ -126,8 +126,7 @@ struct read_attempt {
     bool has_vertex = false;
     bool reached_end = false;
 };
-/// Reads the file as if its numbers had this arrangement in lines. If they do not fit it, the message is returned, not
-/// thrown, as another arrangement may fit.
+/// Reads the file in this arrangement. A message is returned, not thrown, as another arrangement may fit.
 read_attempt read_as(const file_text& file, arrangement tried) {
     off_reader reader(file, tried);
     try {

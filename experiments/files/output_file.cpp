@@ -50,8 +50,7 @@ struct output_file::state {
         if (!file) close(descriptor);
     }
 
-    /// Opens an unnamed file in the target's folder, which vanishes with its process, however that ends. Where the file
-    /// system has no unnamed files, it opens one of a temporary name.
+    /// Opens an unnamed file in the target's folder, which vanishes with the process, or else one of a temporary name.
     void open_in_folder() {
         folder = open(folder_path().c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC);
         if (folder < 0) fail();
@@ -69,8 +68,7 @@ struct output_file::state {
     [[nodiscard]] static std::string link_to(int descriptor) { return "/proc/self/fd/" + std::to_string(descriptor); }
 };
 
-/// Opens an unnamed or temporary file in the target's folder, which `commit` names, so that a failure leaves no partial
-/// file. A pipe or device is opened itself.
+/// Opens a file that `commit` names, so that a failure leaves no partial file. A pipe or device is opened itself.
 output_file::output_file(const std::filesystem::path& file) : state_(std::make_unique<state>()) {
     if (file.empty()) throw aabb::input_error("the file to write has no name");
     state_->target = file;
@@ -116,8 +114,7 @@ void output_file::overwrite(std::uint64_t offset, const void* data, std::size_t 
     if (fseeko(file, 0, SEEK_END) != 0) state_->fail();
 }
 
-/// Gives the complete file its name, in one step that replaces an existing target, so that no reader sees a partial
-/// file. A pipe or device (`in_place`) is only flushed and closed.
+/// Gives the complete file its name in one step, so that no reader sees a partial one. Pipes and devices are closed.
 void output_file::commit() {
     std::FILE* const file = state_->file.get();
     if (std::fflush(file) != 0) state_->fail();

@@ -237,8 +237,7 @@ class strip_triangles {
 public:
     strip_triangles(mesh_builder& mesh, std::size_t location) : mesh_(mesh), location_(location) {}
 
-    /// Adds the triangle of this corner and the two before it. Every other triangle is reversed for consistent winding.
-    /// -1 ends the current part of the strip.
+    /// Adds the triangle of this corner and the two before it, every other one reversed; -1 ends a part of the strip.
     void add(std::int64_t corner) {
         if (corner < 0) return end_part();
         const auto c = static_cast<std::uint32_t>(corner);
@@ -301,9 +300,8 @@ loaded_mesh read_elements(const file_text& file, const header& h, Values values)
 
 }  // namespace
 
-/// Reads PLY. The header says whether the values after it are text or binary. Only the header of a binary file is
-/// decoded as text, as its values must stay as they are. Of a text file the header is read again, so that line numbers
-/// in messages count from the start of the file.
+/// Reads PLY, text or binary by its header. Only the header of a binary file is decoded as text; a text file is read
+/// again from its start, so that messages have its line numbers.
 loaded_mesh read_ply(const file_text& file) {
     const std::size_t end = std::min(end_of_header(file.text), file.text.size());
     const file_text header_text = as_text({file.name, file.text.substr(0, end)});
@@ -317,8 +315,7 @@ loaded_mesh read_ply(const file_text& file) {
     return read_elements(file, h, text_values(in));
 }
 
-/// Whether all of the file is text: unless the line "format" of its header says binary. Without a header that can be
-/// read as bytes, the file may be text in UTF-16.
+/// Whether the file is text: unless its header says binary. Without a legible header, it may be UTF-16.
 bool is_text_ply(std::string_view bytes) {
     const std::size_t end = end_of_header(bytes);
     if (end == std::string_view::npos) return true;

@@ -13,9 +13,8 @@ using aabb::vec3d;
 
 constexpr auto sign_of = [](double x) { return static_cast<int>(x > 0) - static_cast<int>(x < 0); };
 
-/// Of all rotations of the sequence key(0), key(1), … key(count - 1), finds the lexicographically least and returns the
-/// index of its first key: a start of the cycle that does not depend on the given one (Shiloach, "Fast canonization of
-/// circular strings", 1981).
+/// The index of the first key of the lexicographically least rotation of key(0), … key(count - 1): a start of the cycle
+/// that does not depend on the given one (Shiloach, "Fast canonization of circular strings", 1981).
 std::size_t least_rotation(std::size_t count, auto key) {
     // i and j are candidates for the start, and their first `equal` keys agree. All others below max(i, j) are out.
     std::size_t i = 0;
@@ -132,9 +131,8 @@ int polygon_cutter::project() {
     return normal_[dominant].sign();
 }
 
-/// Whether the projected polygon is convex: its boundary never turns against the orientation and winds around once. It
-/// winds around once if it changes exactly twice between ascending and descending lexicographic order (`precedes`).
-/// @param orientation 1 if the boundary is counter-clockwise, -1 if it is clockwise
+/// Whether the projected polygon is convex: it never turns against the orientation (1: counter-clockwise, -1), and
+/// winds around once, changing exactly twice between ascending and descending order (`precedes`).
 bool polygon_cutter::is_convex(int orientation) const noexcept {
     const auto coincide = [&](const vec3d& a, const vec3d& b) { return !precedes(a, b) && !precedes(b, a); };
     const std::size_t n = corners_.size();
@@ -165,8 +163,7 @@ void polygon_cutter::begin_at_least_corner() {
     std::ranges::rotate(corners_, corners_.begin() + static_cast<std::ptrdiff_t>(least_rotation(corners_.size(), key)));
 }
 
-/// The exact sign of the area of the triangle a, b, c, projected along `axis_`: 1 if the path turns left at b, -1 if it
-/// turns right, 0 if the points are collinear.
+/// The exact sign of the projected area of a, b, c: 1 if the path turns left at b, -1 right, 0 if collinear.
 int polygon_cutter::turn(const vec3d& a, const vec3d& b, const vec3d& c) const noexcept {
     const int x = (axis_ + 1) % 3, y = (axis_ + 2) % 3;
     const double left = (b[x] - a[x]) * (c[y] - a[y]);
@@ -265,9 +262,8 @@ polygon_cutter::ear polygon_cutter::kind_of(const corner& b) const noexcept {
     return winding == 1 ? kind : ear::none;
 }
 
-/// Cuts one corner after another off the counter-clockwise polygon, each with a triangle that lies inside it, until
-/// three are left. A corner is cut if it is an ear, or a needle: the boundary stops or runs back, and the triangle has
-/// no area.
+/// Cuts corners off the counter-clockwise polygon, each with a triangle inside it, until three are left: ears, and
+/// needles, at which the boundary stops or runs back, so that the triangle has no area.
 /// @param triangles receives the triangles, n - 2 for n corners
 /// @returns false if the boundary crosses itself, as then no corner can be cut
 bool polygon_cutter::cut_ears(std::span<std::array<std::uint32_t, 3>> triangles) {
@@ -284,8 +280,8 @@ bool polygon_cutter::cut_ears(std::span<std::array<std::uint32_t, 3>> triangles)
         a.kind = c.kind = ear::unknown;
         --remaining;
     };
-    // Needles are cut first, as they may block ears. `passed` counts corners in a row that are no needles, until it
-    // includes all that remain. A cut may turn its two neighbours into needles, so these are visited again.
+    // Needles are cut first, as they may block ears. `passed` counts corners in a row that are none; a cut may turn its
+    // two neighbours into needles, so these are visited again.
     std::uint32_t at = 0;
     for (std::size_t passed = 0; remaining > 3 && passed < remaining;)
         if (is_needle(corners_[at])) {

@@ -113,7 +113,7 @@ void write_boxes(output_file& out, std::span<const Box> boxes, aabb::box& world)
     out.write(records.data(), records.size() * sizeof records[0]);
 }
 
-/// Without objects the file size does not bound the number of frames, and running them would take hours.
+/// Rejects many frames without objects: the file size does not bound their number, and running them would take hours.
 void require_few_empty_frames(const std::filesystem::path& file, std::size_t objects, std::size_t frames) {
     if (objects == 0 && frames > 1'000'000)
         reject(file, "a recording of 0 objects holds at most 1000000 frames, not " + std::to_string(frames));

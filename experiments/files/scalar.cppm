@@ -27,8 +27,7 @@ enum class scalar : std::uint8_t { i8, u8, i16, u16, i32, u32, f32, f64 };
     return number;
 }
 
-/// Reads the number of this type at `bytes`, which need not be aligned, as a double, to which every type converts
-/// exactly.
+/// Reads the number at `bytes`, which need not be aligned, as a double, to which every type converts exactly.
 [[nodiscard]] inline double number_at(const char* bytes, scalar type, bool is_big_endian = false) noexcept {
     const auto as = [&]<class Value>(Value) {
         std::array<char, sizeof(Value)> raw{};

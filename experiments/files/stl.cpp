@@ -24,8 +24,7 @@ public:
         __builtin_prefetch(&slots_[hash & (slots_.size() - 1)]);
         return hash;
     }
-    /// The index of the vertex with these coordinates, which is added if the mesh has none yet. A slot of the hash
-    /// table has a vertex index or `none`; the search goes on from slot to slot up to a free one (open addressing).
+    /// The index of the vertex, added if it is new. The hash table holds indices or `none` (open addressing).
     [[nodiscard]] std::uint32_t index_of(const aabb::vec3d& p, std::size_t hash) {
         const auto bits = bits_of(p);
         std::size_t slot = hash & (slots_.size() - 1);
@@ -46,8 +45,7 @@ private:
     [[nodiscard]] static bits_of_vertex bits_of(const aabb::vec3d& p) noexcept {
         return std::bit_cast<bits_of_vertex>(p);
     }
-    /// A hash of a vertex, whose lower bits select its slot. Multiplications mix bits upwards, so a shift brings the
-    /// upper bits down.
+    /// A hash of a vertex, whose lower bits select its slot: a shift brings the mixed upper bits down.
     [[nodiscard]] static std::size_t hash_of(const bits_of_vertex& bits) noexcept {
         constexpr std::uint64_t odd = 0x9e3779b97f4a7c15U;  // 2^64 over the golden ratio (Knuth, volume 3, 6.4)
         std::uint64_t hash = 0;
@@ -59,8 +57,7 @@ private:
     }
     [[nodiscard]] std::size_t next_slot(std::size_t slot) const noexcept { return (slot + 1) & (slots_.size() - 1); }
 
-    /// Doubles the hash table and inserts all vertices again: in a table that is more than half full, a search passes
-    /// many slots.
+    /// Doubles the hash table: in one that is more than half full, a search passes many slots.
     void double_slots() {
         slots_.assign(2 * slots_.size(), none);
         for (std::uint32_t vertex = 0; vertex < mesh_.vertices(); ++vertex) {
@@ -193,7 +190,7 @@ bool is_text_stl(std::string_view bytes) {
            std::ranges::all_of(bytes, [](char c) { return is_space(c) || static_cast<unsigned char>(c) > ' '; });
 }
 
-/// Reads text STL. A binary file reaches this only if its size contradicts its header, which the message states.
+/// Reads text STL. A binary file gets here only if its size contradicts its header, which the message states.
 loaded_mesh read_stl(const file_text& file) {
     if (is_text_stl(file.text)) return read_text(file);
     const std::size_t size = file.text.size();

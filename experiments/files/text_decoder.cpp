@@ -50,8 +50,7 @@ bool is_plain(std::string_view bytes) {
 
 }  // namespace
 
-/// Detects the encoding by the byte order mark. UTF-16 without a mark is detected by zeros in every other one of the
-/// first four bytes, as ASCII characters have there. Anything else is taken for UTF-8.
+/// Detects the encoding by the byte order mark, UTF-16 without one by alternating zeros in the first four bytes.
 text_encoding text_encoding_of(std::string_view bytes) noexcept {
     if (bytes.starts_with("\xff\xfe\0\0"sv) || bytes.starts_with("\0\0\xfe\xff"sv)) return text_encoding::utf32;
     if (bytes.starts_with("\xff\xfe")) return text_encoding::utf16_little;
@@ -61,8 +60,7 @@ text_encoding text_encoding_of(std::string_view bytes) noexcept {
     return alternates && is_nul(0) != is_nul(1) ? text_encoding::utf16_unmarked : text_encoding::utf8;
 }
 
-/// Decodes the next bytes of a file and appends them to the text. Bytes wait in `undetected_` until there are enough of
-/// them to detect the encoding.
+/// Decodes and appends the next bytes, which wait in `undetected_` until they suffice to detect the encoding.
 void text_decoder::add(std::string_view bytes, std::string& text) {
     std::string first_bytes;
     if (!encoding_) {
@@ -79,8 +77,7 @@ void text_decoder::add(std::string_view bytes, std::string& text) {
         append_utf16(bytes, text);
 }
 
-/// Ends the file, and appends what waited for more bytes: a text too short to detect its encoding, an incomplete
-/// character (as U+FFFD, the replacement character), carriage returns.
+/// Ends the file, and appends what waited: short texts, an incomplete character (as U+FFFD), carriage returns.
 void text_decoder::finish(std::string& text) {
     if (!encoding_) {
         detect_encoding(/*is_at_end=*/true);
@@ -94,8 +91,7 @@ void text_decoder::finish(std::string& text) {
     text.append(std::exchange(pending_returns_, 0), '\n');
 }
 
-/// Detects the encoding of the first bytes, `undetected_`, and drops their byte order mark. Waits if more bytes are
-/// needed and the file has them. Encodings that are not read set `problem_`.
+/// Detects the encoding of `undetected_`, and drops a byte order mark; waits if the file has needed bytes.
 void text_decoder::detect_encoding(bool is_at_end) {
     constexpr std::string_view mark = "\xef\xbb\xbf";
     const std::string_view start = undetected_;
@@ -113,9 +109,8 @@ void text_decoder::detect_encoding(bool is_at_end) {
         undetected_.erase(0, mark.size());
 }
 
-/// Converts UTF-16, in units of two bytes; two surrogate units encode a character beyond U+FFFF. As a call may end
-/// within a unit or a pair, the first byte and the high surrogate are kept for the next. An unpaired surrogate becomes
-/// U+FFFD.
+/// Converts UTF-16; two surrogate units encode a character beyond U+FFFF. As a call may end within a unit or a pair,
+/// the first byte and the high surrogate are kept. An unpaired surrogate becomes U+FFFD.
 void text_decoder::append_utf16(std::string_view bytes, std::string& text) {
     for (const char c : bytes) {
         const auto second = static_cast<unsigned char>(c);
@@ -162,9 +157,8 @@ void text_decoder::append_with_line_feeds(std::string_view utf8, std::string& te
     }
 }
 
-/// Appends a byte of UTF-8. Padding (NUL or Ctrl-Z) is dropped, and is an error if more text follows. Carriage returns
-/// at the end of the first line wait for the byte after them: if that is no line feed, lines end in carriage returns
-/// alone, and these become line feeds.
+/// Appends a byte of UTF-8. Padding (NUL or Ctrl-Z) is dropped, and is an error before further text. Carriage returns
+/// at the end of the first line wait: if no line feed follows, they end all lines, and become line feeds.
 void text_decoder::append_byte(char c, std::string& text) {
     if (is_padding(c)) {
         if (padding_ == ' ') padding_ = c;  // the first one; a blank stands for none
@@ -196,8 +190,7 @@ void text_decoder::append_byte(char c, std::string& text) {
     text += c;
 }
 
-/// Decodes a whole file. It does so piece by piece, as most pieces need no conversion and are copied at once.
-/// @returns the text, and the reason if it is not text
+/// Decodes a file piece by piece, as most need no conversion. @returns the text, and the reason if it is not text
 decoded_text decoded(std::string bytes) {
     if (is_plain(bytes)) return {std::move(bytes), /*problem=*/{}};
     constexpr std::size_t piece = 65'536;

@@ -22,8 +22,7 @@ std::filesystem::path make_temporary_folder() {
     return name;
 }
 
-/// The path of an entry `name` relative to the folder `top`, in which every entry must be. Rejects absolute paths and
-/// "..", as unpacking them could write outside the target.
+/// The path of an entry relative to the folder `top`. Rejects absolute paths and "..", which could lead outside.
 /// @param archive its file name, for the message
 std::filesystem::path path_below(const std::string& top, const std::string& name, const std::string& archive) {
     const std::filesystem::path path(name);
@@ -53,8 +52,7 @@ public:
             fail_reading();
     }
 
-    /// Unpacks the archive's folder `top` as the folder `into`. Anyone may have made the archive, so it is not trusted:
-    /// links, duplicates and more files or bytes than the limits are rejected.
+    /// Unpacks the folder `top` as `into`. An archive is not trusted: links, duplicates and excesses are rejected.
     void unpack(const std::string& top, const std::filesystem::path& into) {
         std::set<std::filesystem::path> paths;
         std::size_t folders = 0;

@@ -28,8 +28,7 @@ void sort_rows(std::span<aabb::index_pair> pairs) {
     sort_by(pairs, objects_of);
 }
 
-/// Sorts contacts by objects a, b, then by triangles of a, b. The radix sort takes keys of 64 bits, which hold only one
-/// of the two pairs: the contacts of each pair of objects are then sorted by their triangles.
+/// Sorts contacts by objects, by a radix sort of keys of 64 bits, then those of each pair by triangles.
 void sort_rows(std::span<aabb::contact> contacts) {
     sort_by(contacts, objects_of);
     for (auto first = contacts.begin(); first != contacts.end();) {
