@@ -58,8 +58,7 @@ template <ReadsFile S>
     return config;
 }
 
-/// Describes kind S, with the function that makes its scenes from a choice of settings, meshes and seed. S is one of
-/// four: a scene of boxes or of meshes, constructed from settings and seed, or opened from a file.
+/// Describes kind S and how its scenes are made: of boxes or meshes, from settings and seed, or from a file.
 template <class S>
 [[nodiscard]] scene_kind kind_of() {
     scene_kind kind{{std::string(S::name), std::string(S::summary), MeshScene<S> || MeshFileScene<S>, ReadsFile<S>,

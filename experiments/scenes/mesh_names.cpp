@@ -23,8 +23,7 @@ bool is_shape(std::string_view name) {
     return std::ranges::find(shapes(), name, &shape_info::name) != shapes().end();
 }
 
-/// Makes the shape that the choice names, which must be one of `Shapes`. Rejects a size beyond the memory before it is
-/// allocated.
+/// Makes the named one of `Shapes`. Rejects a size beyond the memory before it is allocated.
 template <class... Shapes>
 aabb::mesh make_shape(aabb::type_list<Shapes...>, const aabb::strategy_choice& choice) {
     aabb::mesh mesh;
@@ -72,8 +71,7 @@ struct ordered_name {
     std::optional<std::string_view> build;  ///< empty if triangles keep their order
 };
 
-/// Splits "NAME:order=BUILD" into the name and the build, unless a file has the full name. "order=" is a parameter only
-/// after a colon, or after a comma that follows a colon.
+/// Splits "NAME:order=BUILD", unless a file has the full name. A parameter comes only after a colon or a later comma.
 ordered_name split_name(std::string_view name, const std::filesystem::path& folder) {
     constexpr std::string_view key = "order=";
     if (is_there(name, folder)) return {name, {}};
@@ -92,8 +90,7 @@ ordered_name split_name(std::string_view name, const std::filesystem::path& fold
     return {name, {}};
 }
 
-/// Reads the first file of this name in search order, or makes the shape of this name. Rejects an unknown name, and
-/// suggests the nearest known one.
+/// Reads the first file of this name in search order, or makes the shape; suggests a name for an unknown one.
 loaded_mesh make_unordered_mesh(std::string_view name, const std::filesystem::path& folder) {
     std::error_code ignored;
     for (const std::filesystem::path& file : places(name, folder))
@@ -118,8 +115,7 @@ std::filesystem::path data_folder() {
     return set != nullptr && *set != '\0' ? set : AABBLAB_DATA_FOLDER;
 }
 
-/// The path of a file: as given if it exists, otherwise in the folder of the config that names it. An empty name, which
-/// means no file, stays empty.
+/// The path of a file: as given if it exists, otherwise in the folder of the config. An empty name stays empty.
 std::filesystem::path resolve_file(const std::filesystem::path& name, const std::filesystem::path& folder) {
     std::error_code ignored;
     std::filesystem::path in_folder = folder / name;
@@ -138,8 +134,7 @@ bool is_mesh(std::string_view name, const std::filesystem::path& folder) {
     return is_shape(name.substr(0, name.find(':'))) || is_there(name, folder);
 }
 
-/// Makes or reads the mesh of this name. If the name ends in "order=BUILD", its triangles are in the order of the
-/// leaves of the tree that this build strategy makes.
+/// Makes or reads the mesh; "order=BUILD" sorts its triangles by the leaves of the tree that this build makes.
 loaded_mesh make_mesh(std::string_view name, const std::filesystem::path& folder) {
     const auto [plain_name, build] = split_name(name, folder);
     if (!build) return make_unordered_mesh(name, folder);

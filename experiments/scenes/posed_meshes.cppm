@@ -67,8 +67,7 @@ namespace aabblab {
     return m.frame.scale * (double{b.max[k]} - double{b.min[k]});
 }
 
-/// Moves each vertex to its image, rounded to float once: the image is of the vertex as given, in double if its file
-/// has doubles. Then the mesh has no given vertices besides.
+/// Moves each vertex, as given, perhaps in double, to its image, rounded to float once; given vertices are dropped.
 inline void set_floats(aabb::mesh& m, const auto& image_of) {
     for (std::size_t v = 0; v < m.vertices.size(); ++v) {
         Eigen::Vector3d image = image_of(in_eigen(m.given_vertex(v)));

@@ -15,10 +15,10 @@ class random_source {
 public:
     explicit random_source(std::uint64_t seed) : engine_(seed) {}
 
-    /// In [0, 1), a multiple of 2^-53.
+    /// A random multiple of 2^-53 in [0, 1).
     [[nodiscard]] double unit() { return static_cast<double>(engine_() >> 11) * 0x1p-53; }
 
-    /// In [0, count); count > 0.
+    /// A random number in [0, count); count > 0.
     [[nodiscard]] std::uint32_t below(std::uint32_t count) {
         return static_cast<std::uint32_t>((engine_() >> 32) * count >> 32);
     }
@@ -34,18 +34,17 @@ public:
         }
     }
 
-    /// In the cube [0, width)^3.
+    /// A random point in the cube [0, width)^3.
     [[nodiscard]] Eigen::Vector3d point(double width) { return {unit() * width, unit() * width, unit() * width}; }
 
-    /// In [-1, 1).
+    /// A random number in [-1, 1).
     [[nodiscard]] double signed_unit() { return 2 * unit() - 1; }
 
 private:
     std::mt19937_64 engine_;
 };
 
-/// The root of x^3 = value >= 0 by Newton's method, since std::cbrt differs between libraries in its last digit. From a
-/// start above the root, iterates decrease until rounding stops them.
+/// The root of x^3 = value >= 0 by Newton's method, from above until rounding stops it: std::cbrt differs by library.
 [[nodiscard]] inline double cube_root(double value) {
     if (value == 0) return 0;
     double root = value > 1 ? value : 1;
@@ -71,8 +70,7 @@ struct step_range {
 class drifting_points {
 public:
     drifting_points() = default;
-    /// Places points at random, with random directions and steps. They move along the first `axes` axes; their other
-    /// coordinates stay 0.
+    /// Places points with random directions and steps along the first `axes` axes; other coordinates stay 0.
     drifting_points(std::uint32_t count, int axes, double width, step_range steps, random_source& random)
         : axes_(axes), width_(width > 0 ? width : 0) {
         points_.reserve(count);

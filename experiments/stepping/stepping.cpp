@@ -29,9 +29,8 @@ struct depth_of_vertex {
     Vector3d normal;  // of length 1
 };
 
-/// The vertices that springs push. Each contact is a pair of triangles, one of each body: of the second one's triangle,
-/// the vertices below the plane of the first one's triangle count, or at most `rest` above it. A vertex that several
-/// contacts report is repeated.
+/// The vertices that springs push: of each contact's triangle of the second body, those below the plane of the first
+/// one's triangle, or at most `rest` above it. Vertices of several contacts are repeated.
 std::vector<depth_of_vertex> depths_of(std::span<const aabb::contact> contacts, const placed_mesh& first,
                                        const placed_mesh& second, double rest) {
     std::vector<depth_of_vertex> depths;
@@ -167,8 +166,7 @@ aabb::triangle3d placed_mesh::triangle(std::uint32_t index) const {
     return {{corner(0), corner(1), corner(2)}};
 }
 
-/// The force on the second body from all contacts of two bodies. As the law says, it is that of a pressure, of one
-/// spring at the deepest vertex, or of a spring at each vertex.
+/// The force on the second body from all contacts, by law: a pressure, a spring at the deepest vertex, or at each.
 contact_force force_of(const contact_law& law, std::span<const aabb::contact> contacts, const placed_mesh& first,
                        const placed_mesh& second, const aabb::vec3d& approach) {
     if (law.geometry == contact_geometry::shared_volume)
@@ -210,8 +208,7 @@ void stepped_world::place(std::span<const double> position, std::vector<aabb::po
     for (std::size_t i = 0; i < bodies.size(); ++i) poses[i] = {bodies[i].rotation, from_eigen(vector_at(position, i))};
 }
 
-/// Sets the acceleration of every body: gravity, unless it is fixed, and contact forces over its mass. A fixed body has
-/// infinite mass, so forces do not accelerate it.
+/// Sets the acceleration of every body that is not fixed: gravity, and contact forces over its mass.
 /// @param contacts sorted, so that those of two bodies follow each other
 void dynamics::accelerate(std::span<const double> position, std::span<const double> velocity,
                           std::span<const aabb::contact> contacts, std::span<double> acceleration) {

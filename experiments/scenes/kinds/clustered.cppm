@@ -22,8 +22,7 @@ public:
         motion_parameters,
         std::tuple{aabb::integer_parameter{"clusters", &config::clusters, 1U, 1'000'000U, "how many clusters"}});
 
-    /// Makes clusters so wide that each cube overlaps two others of its cluster on average. The world, for
-    /// displacements in spacings, is the bounding box of the clusters.
+    /// Makes clusters so wide that a cube overlaps two others on average; the world is their bounding box.
     clustered(const config& c, std::uint64_t seed) : drifting_boxes(name, c, seed) {
         // The width in which the corners of unit cubes lie; a cluster is wider by the edge of a cube.
         const double width = width_for((c.objects + c.clusters - 1) / c.clusters, /*axes=*/3);

@@ -31,8 +31,7 @@ public:
                                "of the wave, over the extent of the mesh that it deforms"},
         normalise_parameter<config>("scale each mesh to a longest extent of 1")};
 
-    /// Chooses at random the rotations of both meshes, the place of the rigid one beside the waving one at the origin,
-    /// and the direction in which the wave travels and that in which it moves vertices.
+    /// Chooses at random both rotations, the place of the rigid mesh beside the waving one, and the wave's directions.
     deforming(const config& c, std::vector<aabb::mesh> models, std::uint64_t seed)
         : generated_meshes(c.frames, std::move(models), c.normalise) {
         // A single mesh is paired with a copy of itself.

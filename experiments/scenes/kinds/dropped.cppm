@@ -37,8 +37,8 @@ public:
         aabb::number_parameter{"loss", &config::loss, 0.0, 1e6, "damping over critical damping", true},
         normalise_parameter<config>("scale the ball to a longest extent of 1")};
 
-    /// Places the balls above the floor; in each frame, the contacts that the tested method reports push them apart.
-    /// The floor keeps its size; the ball is scaled to extent 1 unless the configuration says otherwise.
+    /// Places the balls above the floor; contacts that the tested method reports push them away from each other. The
+    /// floor keeps its size; the ball is scaled to extent 1 unless the configuration says otherwise.
     dropped(const config& c, std::vector<aabb::mesh> models, std::uint64_t seed)
         : generated_meshes(c.frames, std::move(models), scaling::no), step_(c.step) {
         if (meshes.size() != 2) throw aabb::input_error("dropped needs two meshes: a floor and a ball");

@@ -23,8 +23,7 @@ public:
                        std::tuple{aabb::number_parameter{"displacement", &config::displacement, 0.0, 1e9,
                                                          "displacement of a flying cube per frame, in edges"}});
 
-    /// Places unit cubes at random in a cube of their total volume, centred at the origin. They later fly
-    /// straight away from this centre.
+    /// Places unit cubes at random in a cube of their total volume around the origin, from which they will fly.
     explosion(const config& c, std::uint64_t seed)
         : generated_boxes(name, c, seed, sizeof(flying_box)), flight_step_(c.displacement) {
         const double side = cube_root(c.objects);

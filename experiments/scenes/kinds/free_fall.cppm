@@ -47,8 +47,7 @@ private:
         for (falling_box& b : boxes_) fall(b);
     }
 
-    /// Moves a box freely for a frame, the unit of time: z += v - g/2, v -= g. If it hits the floor within the frame,
-    /// it bounces and rises for the remaining time.
+    /// Moves a box freely for a frame: z += v - g/2, v -= g. If it hits the floor, it bounces and rises for the rest.
     void fall(falling_box& b) const {
         double& z = b.corner[2];
         const double next = z + b.speed - gravity_ / 2;

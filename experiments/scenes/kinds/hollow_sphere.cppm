@@ -17,8 +17,7 @@ public:
     using config = motion_config;
     static constexpr auto parameters = motion_parameters;
 
-    /// Derives the radius r of the sphere from the number of cubes, and the angle of a step along a great circle from
-    /// the displacement. Places the cubes at random, with random directions.
+    /// Derives the radius r from the number of cubes, and the angle of a step from the displacement.
     hollow_sphere(const config& c, std::uint64_t seed) : generated_boxes(name, c, seed, sizeof(point)) {
         // A cube overlaps those with centres in the cube of edge 2 around its own, in which the sphere has an area of
         // 4.767, averaged over the direction of its normal. Each overlaps two others if n · 4.767 / (4πr²) = 2.
@@ -55,8 +54,7 @@ private:
         }
     }
 
-    /// Gives a random hundredth of the points a new direction, then moves each point by a step along its great circle.
-    /// Point and direction are orthogonal unit vectors, which the step rotates in their plane.
+    /// Gives a random hundredth of the points a new direction, then moves each by a step along its great circle.
     void advance() override {
         const auto count = static_cast<std::uint32_t>(points_.size());
         // The remainder is carried over, so that few points turn as often as many do.

@@ -29,8 +29,7 @@ public:
         aabb::number_parameter{"turn", &config::turn, 0.0, 1e6, "of the second mesh per frame, in radians", true},
         normalise_parameter<config>("scale each mesh to a longest extent of 1")};
 
-    /// Chooses the start of the second mesh's path, its axis and its first rotation at random. A single mesh is paired
-    /// with itself.
+    /// Chooses the second mesh's path, axis and first rotation at random. A single mesh is paired with itself.
     mesh_pair(const config& c, std::vector<aabb::mesh> models, std::uint64_t seed)
         : generated_meshes(c.frames, std::move(models), c.normalise), is_turning_(c.turn > 0) {
         mesh_of = {0, static_cast<std::uint32_t>(meshes.size() - 1)};

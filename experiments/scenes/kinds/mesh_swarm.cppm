@@ -41,9 +41,8 @@ public:
             aabb::number_parameter{"span", &config::span, 0.0, 1.0,
                                    "longest extent of a huge object over the side of the world"}});
 
-    /// The density gives the side of the world: it is the volume of the objects that are not huge, as cubes of their
-    /// extents, over that of the world. The huge mesh is scaled to `span` of the side. Points, steps and rotations are
-    /// random.
+    /// The density gives the world's side: the volume of the objects not huge, as cubes of their extents, over that of
+    /// the world. The huge mesh is scaled to `span` of the side. Points, steps and rotations are random.
     mesh_swarm(const config& c, std::vector<aabb::mesh> models, std::uint64_t seed)
         : generated_meshes(c.frames, std::move(models), c.normalise), random_(seed) {
         require_memory(
@@ -72,15 +71,14 @@ public:
     }
 
 private:
-    /// Of the objects that are not huge.
+    /// Sums over the objects that are not huge.
     struct extent_sums {
         double extents = 0;
         double volumes = 0;  ///< of cubes with the extents
     };
 
-    /// Sets the mesh of each object: the huge ones, which come first, have mesh 0; the others alternate between the
-    /// other meshes, or have a copy of mesh 0 if there is no other. Without huge ones, mesh 0 is one of those that
-    /// alternate.
+    /// Sets the meshes: the huge objects, which come first, have mesh 0; the others alternate between the other meshes,
+    /// also mesh 0 if none is huge, or have a copy of mesh 0 if there is no other.
     extent_sums assign_meshes(std::uint32_t huge, std::uint32_t others) {
         const std::uint32_t first_other_mesh = huge > 0 ? 1 : 0;
         if (meshes.size() == first_other_mesh) meshes.push_back(meshes[0]);

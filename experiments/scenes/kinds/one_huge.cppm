@@ -26,8 +26,7 @@ public:
                                           "world"},
                    aabb::integer_parameter{"huge", &config::huge, 0U, 0x7fffffffU, "how many boxes are huge"}});
 
-    /// The world is so wide that each unit cube overlaps two others on average. The edge of a huge cube is `span` of
-    /// the side of the world. All cubes take the same step per frame.
+    /// The world is so wide that a unit cube overlaps two others on average; a huge edge is `span` of its side.
     one_huge(const config& c, std::uint64_t seed) : generated_boxes(name, c, seed, drifting_points::bytes_each) {
         const std::uint32_t huge = std::min(c.objects, c.huge);
         const double width = width_for(c.objects, /*axes=*/3);  // of the lowest corners; the world is wider by an edge

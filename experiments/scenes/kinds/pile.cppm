@@ -23,8 +23,7 @@ public:
                        std::tuple{aabb::integer_parameter{"neighbours", &config::neighbours, 10U, 50U,
                                                           "mean number of others that a box overlaps"}});
 
-    /// Places boxes at random in a heap, whose height is such that a box overlaps the wanted number of others on
-    /// average. A box starts at its home, near which it later moves.
+    /// Places boxes at random in a heap of such a height that each overlaps the wanted number on average.
     pile(const config& c, std::uint64_t seed) : generated_boxes(name, c, seed, sizeof(jiggling_box)) {
         const double height = height_for(c);
         step_ = step_of(c, 1, {2 * height + 1, 2 * height + 1, height + 1});

@@ -59,8 +59,7 @@ pair lattice_pair(random_source& random, std::uint32_t most) {
     return {lattice_triangle(random, most), lattice_triangle(random, most)};
 }
 
-/// The second triangle lies in the plane of the first, but for rounding and a random change of each coordinate by -1, 0
-/// or 1 unit in the last place.
+/// The second triangle lies in the first's plane, but for rounding and random changes by -1, 0 or 1 last places.
 pair near_coplanar(random_source& random, const format& f) {
     pair p = any_pair(random);
     for (Vector3d& corner : p.b) {
@@ -109,8 +108,7 @@ pair coplanar(random_source& random, const format&) {
     return changed(any_pair(random), [&](const Vector3d& p) -> Vector3d { return {p[0], p[1], height}; });
 }
 
-/// Two triangles of length 1 and height up to 1e-6. Both have a long edge that passes a common point within this
-/// height, so that a small error decides whether they intersect.
+/// Two triangles of length 1 and height up to 1e-6 whose long edges pass a common point within this height.
 pair sliver(random_source& random, const format&) {
     constexpr double height = 1e-6;
     pair p = any_pair(random);

@@ -108,8 +108,7 @@ svg_box rectangle_of(const view_plane& view, const aabb::box& b) {
     return {left, top, std::max(1.0, view.x(b.max[view.across]) - left), std::max(1.0, view.y(b.min[view.up]) - top)};
 }
 
-/// Draws the boxes of a frame, in one colour those that overlap another, in another the rest. Outlines the first
-/// `drawing.huge` ones, the largest, which would otherwise be hidden.
+/// Draws the boxes, in one colour those that overlap another, and outlines of the first `drawing.huge` ones.
 void add_boxes(svg_picture& to, const view_plane& view, const picture_data::frame& frame,
                const frame_drawing& drawing) {
     double area = 0;

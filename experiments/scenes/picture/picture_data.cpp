@@ -34,9 +34,8 @@ void picture_data::add_frame(std::span<const aabb::box> boxes, std::span<const s
     if (frames_seen_++ == 0) first_ = last_;
 }
 
-/// Adds the present boxes of a frame to the bounds of the world, and to the sums of longest extents and of
-/// displacements since the last frame, whose means the caption states. An axis stays flat while all boxes of a frame
-/// are equal on it.
+/// Adds present boxes to the bounds of the world, and to the sums of longest extents and displacements, whose means the
+/// caption states. An axis stays flat while all boxes of a frame are equal on it.
 void picture_data::measure(std::span<const aabb::box> boxes, std::span<const std::uint8_t> present) {
     const aabb::box* first = nullptr;
     for (std::size_t i = 0; i < boxes.size(); ++i) {

@@ -68,8 +68,7 @@ private:
             return on_sphere(p * (cuts - i - j) + q * i + r * j);
         }
 
-        /// Cuts the face with corners p, q, r into triangles. Row j of its vertices is parallel to p-q, from the edge
-        /// p-r to the edge q-r, and has cuts - j + 1 of them; the triangles lie between a row and the one below.
+        /// Cuts a face into triangles between rows parallel to p-q; row j, from p-r to q-r, has cuts - j + 1 vertices.
         void cut_face(std::uint32_t p, std::uint32_t q, std::uint32_t r) {
             std::vector<std::uint32_t> below;
             for (std::uint32_t j = 0; j <= cuts; ++j) {

@@ -18,8 +18,7 @@ struct noise_sphere {
     using config = shape_size<5000>;
     static constexpr auto parameters = config::parameters(18, "about how many triangles");
 
-    /// Puts a vertex at each pole and rings of vertices between them, at distances from the centre that the noise
-    /// determines. Fans of triangles join the poles to the outer rings.
+    /// Puts a vertex at each pole and rings between them, at distances that the noise determines.
     [[nodiscard]] static aabb::mesh make(const config& c) {
         const auto [rings, around] = rings_for(c.triangles, /*aspect=*/0.5);
         const noise waves;

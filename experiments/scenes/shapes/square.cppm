@@ -13,8 +13,7 @@ struct square {
     using config = shape_size<2>;
     static constexpr auto parameters = config::parameters(2, "about how many triangles");
 
-    /// Divides the square into n² smaller ones of two triangles each, with the greatest n such that 2 n² is at most the
-    /// wanted number of triangles.
+    /// Divides the square into n² squares of two triangles each, with the greatest 2 n² up to the wanted number.
     [[nodiscard]] static aabb::mesh make(const config& c) {
         constexpr float side = 100;
         std::uint32_t n = 1;

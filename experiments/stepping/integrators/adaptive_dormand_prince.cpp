@@ -18,8 +18,7 @@ class adaptive_dormand_prince final : public integrator {
 public:
     explicit adaptive_dormand_prince(double tolerance) : tolerance_(tolerance) {}
 
-    /// Advances the state by `step`, in steps of its own, so short that the estimated error of each is within the
-    /// tolerance.
+    /// Advances the state by `step`, in own steps so short that the estimated error of each is within the tolerance.
     void advance(const acceleration_of& acceleration, motion_state& state, double step) override {
         namespace odeint = boost::numeric::odeint;
         using stepper = odeint::runge_kutta_dopri5<std::vector<double>>;

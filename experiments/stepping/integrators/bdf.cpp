@@ -23,8 +23,7 @@ public:
         context_.reset(context);
     }
 
-    /// Advances the state by `step`. CVODE continues its solution from the earlier calls, on which its order and the
-    /// length of its own steps depend. Rethrows an exception of the callback that computes accelerations.
+    /// Advances the state by `step`. CVODE continues from the earlier calls; an exception of the callback is rethrown.
     void advance(const acceleration_of& acceleration, motion_state& state, double step) override {
         if (!system_) {
             system_.emplace(acceleration, state);
@@ -60,8 +59,7 @@ private:
     template <class Handle, auto Free>
     using owned = std::unique_ptr<std::remove_pointer_t<Handle>, freed_by<Free>>;
 
-    /// Sets CVODE up for these initial values: backward differences, Newton's method with a dense matrix, the tolerance
-    /// of this integrator, and no printed messages.
+    /// Sets CVODE up for these values: backward differences, Newton's method with a dense matrix, no messages.
     void create_solver(const std::vector<double>& initial, double time) {
         const auto size = static_cast<sunindextype>(initial.size());
         values_.reset(N_VNew_Serial(size, context_.get()));

@@ -37,9 +37,8 @@ constexpr published_errors published[] = {{1e-3, 185.027, 72274.4}, {1e-4, 1.850
 
 }  // namespace
 
-/// Lets the balls bounce without loss with each symplectic integrator, at the step sizes of the published results, and
-/// reports the error of their energy beside the published one. With an integrator of order 2, the error must be below a
-/// limit and must not creep: its mean in the last quarter must be near that in the first.
+/// Lets the balls bounce without loss with each symplectic integrator, and reports the error of their energy beside the
+/// published one. With order 2, it must be below a limit and not creep: last quarter against first.
 void run_bouncing(const stiff_setting& setting, stiff_result& result) {
     const stepped_world world = bouncing_balls();
     const double initial_energy = 49 * mass * gravity * height;  // of 7 by 7 balls

@@ -101,8 +101,7 @@ private:
         return sum;
     }
 
-    /// The greatest overlap of two balls, treated as spheres, in diameters; 0 if none overlap.
-    /// @param p three coordinates of each body in turn, of which body 0 is the floor
+    /// The greatest overlap of two balls as spheres, in diameters; 0 if none. `p` has the floor as body 0.
     [[nodiscard]] double greatest_depth(const std::vector<double>& p) const {
         double least_distance = diameter_;
         for (std::size_t i = 1; 3 * i < p.size(); ++i)
@@ -129,8 +128,7 @@ void plot_depths(const std::string& size, const std::string& label, const trajec
     for (std::size_t i = 0; i < t.times.size(); ++i) result.plot(depth, label, t.times[i], t.depths[i]);
 }
 
-/// The trajectory of the balls with each method. Since these runs are not timed, every processor has a thread that
-/// takes the next method until none is left; the calling thread reports progress.
+/// The trajectory with each method. These runs are not timed, so every processor has a thread that takes methods.
 std::vector<trajectory> trajectories_of(const std::vector<method>& methods, const dropped_balls& balls, double step,
                                         const stiff_setting& setting) {
     std::vector<trajectory> trajectories(methods.size());
@@ -150,8 +148,7 @@ std::vector<trajectory> trajectories_of(const std::vector<method>& methods, cons
     return trajectories;
 }
 
-/// Adds rows for a trajectory with an inexact method: how far it departs from the one with exact contacts, and, if it
-/// does, from which step on, and its greatest depth and energy error.
+/// Adds rows for an inexact method: how far it departs from exact contacts, from which step on, and its errors.
 /// @param errors the departure by step, in diameters
 /// @returns whether it departs
 bool report_departure(const std::string& subject, const trajectory& t, const std::vector<double>& errors,
@@ -199,10 +196,9 @@ void compare_methods(const dropped_balls& balls, const std::string& size, const 
     result.add(reported("exact, " + size, "energy error, RMS", reference.energy_error));
 }
 
-/// Plots the error of a trajectory over its detection time: of each symplectic integrator with several step sizes, and
-/// of stale Verlet lists with several numbers of frames between rebuilds. The reference has a 16th of the smallest
-/// step. The energy error of a symplectic integrator is bounded, and must fall with the step size to the power of its
-/// order; the energy of other integrators drifts, so they are left out.
+/// Plots error over detection time, for symplectic integrators with several step sizes and stale Verlet lists, against
+/// a 16th of the smallest step. The energy error of symplectic ones is bounded, and must fall with the step to the
+/// power of the order; that of others drifts, so they are left out.
 void compare_steps(const dropped_balls& balls, const stiff_setting& setting, stiff_result& result) {
     const std::vector<double> steps =
         setting.quick ? std::vector{4e-3, 2e-3, 1e-3} : std::vector{4e-3, 2e-3, 1e-3, 5e-4};

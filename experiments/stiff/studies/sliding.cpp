@@ -62,9 +62,8 @@ aabb::mesh placed(aabb::mesh m, const placement& p) {
     return m;
 }
 
-/// The normal force between the meshes at each position of the slide, relative to the load: the force if the contacts
-/// of all tips are detected. The spring of a tip that just touches is already compressed by `rest`, so that a
-/// contact of depth 0 exerts a force too.
+/// The normal force at each position of the slide over the load: the force if the contacts of all tips are detected. A
+/// spring that just touches is compressed by `rest`, so that a contact of depth 0 exerts a force too.
 std::vector<double> forces_of(const candidate& tested, const placement& p) {
     const aabb::mesh lower = placed(floor_of(/*side=*/8, /*n=*/16), p);
     const aabb::mesh upper = placed(comb_mesh(), p);

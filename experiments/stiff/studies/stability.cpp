@@ -65,9 +65,8 @@ double energy_factor_of_dormand_prince(double scaled_step) {
     return std::norm(growth);
 }
 
-/// Whether an integrator is stable with steps of this dt·ω: in 20,000 steps, the ball stays in contact, and its
-/// greatest energy in the second half is at most 1 % above that in the first. Halves are compared because the energy
-/// oscillates, and the more the nearer the limit: a symplectic integrator conserves only a modified energy.
+/// Whether an integrator is stable at this dt·ω: in 20,000 steps, the ball stays in contact, and its greatest energy is
+/// at most 1 % more in the second half. Halves, as a symplectic integrator conserves only a modified energy.
 bool is_stable(const candidate& tested, const integrator_info& stepping, double scaled_step) {
     // The amplitude is so small that the ball stays in contact even if the amplitude grows.
     oscillating_ball ball(tested, stepping, /*amplitude=*/at_rest * 1e-6, /*tolerance=*/0);
@@ -102,9 +101,8 @@ void mark_limits(std::span<figure> figures, std::span<const stiff_row> rows) {
 
 }  // namespace
 
-/// Measures the energy drift of each integrator at several step sizes, and the greatest stable step of those with a
-/// fixed step. The energy of symplectic ones must not drift; dormand_prince, of order 5, must lose energy as its
-/// stability polynomial says: each step multiplies the energy by a factor.
+/// Measures energy drift at several steps, and the greatest stable one of fixed steps. Symplectic energy must not
+/// drift; dormand_prince, of order 5, must lose energy by the factor per step of its stability polynomial.
 void run_stability(const stiff_setting& setting, stiff_result& result) {
     const std::size_t periods = setting.quick ? 100 : 1000;
     for (const integrator_info& i : integrators()) {
@@ -122,7 +120,7 @@ void run_stability(const stiff_setting& setting, stiff_result& result) {
                     result.add(
                         at_most(subject, "energy drift, absolute value", std::abs(drift), setting.quick ? 0.05 : 1e-3));
                 } else {
-                    // The energy falls: its greatest values are at the first steps of both tenths, 0.9 of all apart.
+                    // Falling energy is greatest at the first step of each tenth: 0.9 of the run lies between.
                     const double lost =
                         std::pow(energy_factor_of_dormand_prince(scaled_step),
                                  0.9 * static_cast<double>(periods) * 2 * std::numbers::pi / scaled_step) -

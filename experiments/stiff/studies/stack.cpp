@@ -42,9 +42,8 @@ double depth_of(const motion_state& state, std::size_t i) {
 
 }  // namespace
 
-/// Lets the stack settle for two seconds and compares the depth of each body in the one below with mg/k, where m is its
-/// mass and that above. Runs the implicit integrator, and Verlet where the masses are similar: more mass needs a
-/// stronger dashpot, and so shorter explicit steps.
+/// Compares the depth of each settled body in the one below with mg/k, with the mass m of it and those above. Explicit
+/// Verlet runs only where masses are similar: more mass needs a stronger dashpot, and so shorter steps.
 void run_stack(const stiff_setting& setting, stiff_result& result) {
     for (const double ratio : {1.0, 10.0, 100.0, 1000.0}) {
         const stepped_world world = stack_of(ratio);
