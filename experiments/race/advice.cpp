@@ -21,8 +21,7 @@ std::string ratio_text(const racer& r) {
                    : fmt::format("is as fast within the noise of {} repeats {}", r.times.size(), range);
 }
 
-/// A sentence about the time of `auto`, the default, which users get without a recommendation. Empty if it is first or
-/// second, as other sentences then describe it.
+/// A sentence on the time of the default, `auto`; empty if it is first or second, as other sentences describe it.
 std::string sentence_about_auto(const race_result& race) {
     const auto is_automatic = [](const racer& r) { return r.tested.name.is_automatic(); };
     if (const auto ended = std::ranges::find_if(race.finalists, is_automatic); ended != race.finalists.end())
@@ -51,8 +50,8 @@ struct break_even {
     bool faster_before;  ///< the other candidate is faster for fewer frames
 };
 
-/// Where the total times of two candidates are equal: n frames take t1 + (n - 1) s, with t1 the time up to frame 0 and
-/// s that of each further frame, so n = 1 - (difference of t1) / (difference of s). Empty if not significant.
+/// The number n of frames for which two candidates take equally long, t1 + (n - 1) s, with t1 up to frame 0 and s per
+/// further frame: n = 1 - (difference of t1) / (difference of s). Empty if not significant.
 std::optional<break_even> break_even_of(const racer& other, const racer& winner) {
     if (!other.has_range()) return std::nullopt;
     const auto begin = significant_difference(other, winner, [](const observation& t) { return t.over(1); });
@@ -77,9 +76,8 @@ std::string frames_text(const race_result& race) {
                        counted(race.frames, "frame"));
 }
 
-/// Which candidate would be faster than the winner if the scene had fewer frames than were timed, or more: "below about
-/// 12 frames, NAME would be faster". Names the candidate whose break-even with the winner (the number of frames for
-/// which both take equally long) is the nearest.
+/// The candidate that would be faster than the winner with fewer or more frames, by the nearest break-even: "below
+/// about 12 frames, NAME would be faster".
 std::vector<std::string> faster_at_other_lengths(const race_result& race) {
     const racer& winner = race.finalists.front();
     if (race.final_frames < 2 || race.finalists.size() < 2 || !winner.has_range()) return {};  // nothing to compare
@@ -105,8 +103,7 @@ std::vector<std::string> faster_at_other_lengths(const race_result& race) {
     return parts;
 }
 
-/// Sentences that limit the recommendation: candidates that did not run for lack of time, and results that were not
-/// compared with the ground truth, or differ between finalists.
+/// Caveats: candidates that did not run, and results that were not compared or differ between finalists.
 std::vector<std::string> caveats_of(const race_result& race) {
     std::vector<std::string> sentences;
     const auto not_run =
@@ -130,8 +127,7 @@ std::vector<std::string> caveats_of(const race_result& race) {
 
 }  // namespace
 
-/// The recommendation, a sentence each: the winner and its lead, for which numbers of frames another candidate would be
-/// faster, `auto`, options that select the winner, wrong results, caveats.
+/// The recommendation, a sentence each: the winner, other numbers of frames, `auto`, options, wrong results, caveats.
 std::vector<std::string> advice_of(const race_result& race) {
     const racer& winner = race.finalists.front();
     std::string use = fmt::format("Use {}: {:.4g} ms for {}", winner.name, winner.last->whole_ms(), frames_text(race));

@@ -85,19 +85,17 @@ public:
 private:
     [[nodiscard]] double seconds_left() const { return limits_.to_run(); }
 
-    /// The time limit of a run in seconds. The very first run of the race gets more.
-    /// @param least the seconds of the fastest run so far; infinite before any
-    /// @param margin a run that takes `margin` times as long is still permitted
+    /// The time limit in seconds of a run that may take `margin` times as long as the fastest so far, `least`, infinite
+    /// before any. The very first run of the race gets more.
     [[nodiscard]] double time_limit(double least, double margin) const {
         const stopping_rule rule{.grace = std::min(1.0, budget_ / 20), .share = budget_ / 16, .margin = margin};
         return std::isfinite(least) ? rule.longest(least) : rule.grace + budget_ / 4;
     }
 
     /// Runs a candidate on the first frames of the scene and records its times (`last`), or that it did not finish
-    /// (`broken_off`).
+    /// (`broken_off`). Returns whether it finished.
     /// @param seconds the time limit of this run
     /// @param time_left the time for all runs together
-    /// @returns whether it finished
     bool run_candidate(racer& r, std::size_t frames, double seconds, double time_left) {
         attempt outcome = scene_.run(r.tested, frames, seconds, time_left);
         if (outcome.end != ending::done) {
@@ -138,8 +136,7 @@ private:
         return std::isfinite(least);
     }
 
-    /// Runs all candidates on the first frames. If none finishes, the first one gets all the time that is left, with
-    /// that reserved for the ground truth, to finish one frame.
+    /// Runs all candidates on the first frames; if none finishes, the first gets the remaining time for one frame.
     void run_first_round(std::size_t& frames, double margin) {
         if (!run_all(frames, margin, /*is_first_round=*/true)) {
             frames = 1;
@@ -150,8 +147,7 @@ private:
         finish_round(frames, margin);
     }
 
-    /// Reports that no candidate finished any frame: with the message of one that rejected the scene as invalid, or how
-    /// the first one ended.
+    /// Reports that no candidate finished: by the message of one that rejected the scene, or how the first one ended.
     [[noreturn]] void reject_all() const {
         for (const racer& r : running_)
             if (r.broken_off->end == ending::rejected) throw aabb::input_error(r.broken_off->reason);
@@ -161,9 +157,8 @@ private:
                                             first.broken_off->end == ending::stopped ? "; increase --seconds" : ""));
     }
 
-    /// Runs all candidates on the first frames and drops those slower than the fastest by more than the factor
-    /// `margin`. If time is over before all have run, or if none finishes, their previous runs are restored, and none
-    /// is dropped.
+    /// Runs all candidates on the first frames and drops those slower than the fastest by more than `margin`. If time
+    /// is over before all have run, or none finishes, previous runs are restored, and none is dropped.
     /// @returns whether the round counts
     bool run_round(std::size_t frames, double margin) {
         const std::vector<racer> before = running_;
@@ -245,8 +240,8 @@ private:
         return fewest_repeats * seconds_of_repeat(frames) <= seconds_left();
     }
 
-    /// The number of frames of the final: all, or as many as fit into the time left, but not fewer than those of the
-    /// last round, `final_frames`. Each step reduces the difference to these by an eighth.
+    /// The number of frames of the final: all, or what fits into the time left, but at least those of the last round,
+    /// `final_frames`. Each step reduces the difference to these by an eighth.
     [[nodiscard]] std::size_t frames_of_final() const {
         std::size_t frames = result_.frames;
         while (frames > result_.final_frames && !final_fits(frames))
@@ -307,9 +302,8 @@ private:
             throw aabb::input_error(running_.front().broken_off->reason);
     }
 
-    /// Moves finalists whose results differ from those of CGAL, the ground truth, to `wrong`. If CGAL does not finish
-    /// in time, the results of the frames that it finished are compared: `digests[i]` is a hash of all pairs up to
-    /// frame i.
+    /// Moves finalists whose results differ from CGAL's to `wrong`. If CGAL does not finish in time, the frames that it
+    /// finished are compared: `digests[i]` is a hash of all pairs up to frame i.
     void compare_with_cgal() {
         const auto cgal = std::ranges::find(aabb::engines(), "cgal", &aabb::engine_info::name);
         const attempt exact = scene_.run(*candidate_of(*cgal, scene_.scene().meshes() != nullptr), result_.final_frames,

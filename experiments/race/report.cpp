@@ -93,9 +93,8 @@ std::string measures_page(staged_scene& scene, double seconds) {
 
 }  // namespace
 
-/// Times the compositions and engines on a scene, prints the ranking and recommends the fastest. The scene is read and
-/// the page is opened first, so that invalid input is reported without delay.
-/// @returns the exit status: 1 if results differ
+/// Times the compositions and engines, prints the ranking and recommends the fastest. The page is opened first, so that
+/// invalid input is reported without delay. Returns the exit status: 1 if results differ.
 int recommend(const recommend_request& request) {
     require_fine_clock();
     time_limits limits(request.seconds);

@@ -15,9 +15,8 @@ namespace aabblab {
 
 namespace {
 
-/// Gives a candidate the strategies of one stage: their names, the function that makes the stage, and whether its
-/// results must be exact. A strategy that needs meshes divides them, and then the broad phase finds pairs of parts,
-/// which cannot be compared with pairs of whole objects (`whole_boxes`).
+/// Gives a candidate the strategies of one stage. A strategy that needs meshes divides them, and then the broad phase
+/// finds pairs of parts, which cannot be compared with pairs of whole objects (`whole_boxes`).
 void set_stage(candidate& result, const aabb::composition& c, aabb::stage stage) {
     for (const aabb::strategy_kind kind : kinds_of(stage)) result.name[kind] = to_text(c[kind]);
     result.exact = result.exact && is_exact(c, stage);
@@ -101,8 +100,7 @@ public:
 
     /// "brownian (objects=1000 seed=1)"
     [[nodiscard]] std::string scene_text() const { return scene_.kind + " (" + parameters_text(scene_) + ")"; }
-    /// The file with all frames of the scene, for external programs to read. The first call writes it into a temporary
-    /// folder, which `guard_` deletes.
+    /// The file with all frames for external programs, which the first call writes to a folder that `guard_` deletes.
     [[nodiscard]] const std::filesystem::path& recording() {
         if (!recording_.empty()) return recording_;
         std::error_code error;
@@ -201,8 +199,7 @@ private:
 /// Error messages begin with the place in the config and the scene.
 class external_search final : public aabb::global_stage {
 public:
-    /// Runs the engine, an external program, on all frames at once; `update` then advances through the pairs that it
-    /// wrote.
+    /// Runs the engine, an external program, on all frames at once; `update` then advances through its pairs.
     /// @param exchange the recorded scene, and the folder for the output
     /// @param times receives the reported times, by frame
     /// @throws engine_timeout, and aabb::input_error if the engine fails or reports malformed times
@@ -250,8 +247,7 @@ private:
 
     [[noreturn]] void fail(const std::string& sentence) const { throw aabb::input_error("the " + name_ + sentence); }
 
-    /// Runs the engine on the recording of the scene; it writes its pairs and its times to two files. Their names are
-    /// its last arguments: COMMAND… RECORDING PAIRS TIMES.
+    /// Runs the engine on the recording; it writes pairs and times to files: COMMAND… RECORDING PAIRS TIMES.
     void run(const external_engine& engine, exchange_folder& exchange) {
         const std::filesystem::path recording = exchange.recording();
         objects_ = exchange.objects();
@@ -265,8 +261,7 @@ private:
             std::filesystem::remove(file);
             arguments.push_back(file.string());
         }
-        // Without a terminal the engine cannot wait for keyboard input; the keeper, a process between this one and the
-        // engine, kills all processes that the engine leaves behind.
+        // Without a terminal the engine cannot wait for input; the keeper kills all processes that it leaves behind.
         const std::chrono::seconds timeout(engine.timeout_s);
         const program_result ended =
             run_child(engine.program, arguments, {.input = "/dev/null", .has_keeper = true, .timeout = timeout});
@@ -309,8 +304,7 @@ private:
         next_row_ = {frame, aabb::ordered_pair(a, b)};
     }
 
-    /// Collects the pairs of the next frame, `frame_`, into `pairs_`, up to the first row of a later frame,
-    /// `next_row_`. Rows must be sorted by frame, so that one pass suffices, and be distinct.
+    /// Collects the pairs of `frame_` up to a row of a later frame; rows must be sorted by frame, and distinct.
     void take_frame() {
         pairs_.clear();
         for (; next_row_ && next_row_->frame <= frame_; read_next_row()) {
@@ -337,8 +331,7 @@ private:
     std::vector<aabb::index_pair> pairs_;
 };
 
-/// An external engine as a candidate. Creating its broad phase (`make_global`) runs it on the whole scene and fills in
-/// the times that it reports (`reported`).
+/// An external engine as a candidate: `make_global` runs it on the scene and fills in its times (`reported`).
 /// @param exchange the recorded scene, shared with other external engines
 candidate candidate_of(const external_engine& engine, const std::shared_ptr<exchange_folder>& exchange) {
     candidate result;
@@ -354,8 +347,7 @@ candidate candidate_of(const external_engine& engine, const std::shared_ptr<exch
 
 }  // namespace
 
-/// The candidates of an experiment that can run the scene, in the order of all tables: compositions of strategies,
-/// compositions that `auto` selects, engines (other libraries), and external engines (other programs).
+/// The candidates that can run the scene, in table order: compositions, `auto`, engines, external engines.
 std::vector<candidate> candidates_for(const experiment& e, const scene_choice& scene) {
     const bool meshes = has_meshes(scene);
     std::vector<candidate> candidates;

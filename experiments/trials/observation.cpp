@@ -5,7 +5,7 @@ namespace aabblab {
 namespace {
 
 /// Replaces the measured times by those that an external engine reports: while measuring, only its output was read.
-/// @param times by frame; frame 0 is kept apart from the rest
+/// @param times by frame; frame 0 is kept separate from the rest
 void use_reported_times(std::span<const reported_times> times, observation& result) {
     result.build = {};
     result.first = result.rest = {};
@@ -23,8 +23,7 @@ void evict_caches() {
     for (std::size_t i = 0; i < buffer.size(); i += line) ++buffer[i];
 }
 
-/// Times a query: with cold caches once; with warm caches the mean of several, as one may take only a microsecond,
-/// after an untimed one, which loads its data into the caches.
+/// Times a query: cold once; warm, after an untimed one, as the mean of several, as one may take only a microsecond.
 template <class Query>
 elapsed mean_time(const Query& query, bool cold) {
     const int repeats = cold ? 1 : 16;
@@ -35,8 +34,7 @@ elapsed mean_time(const Query& query, bool cold) {
     return {sum.wall_ms / repeats, sum.cpu_ms / repeats};
 }
 
-/// Times the query for all pairs of triangles, for the first contact or for their number. The results of the latter two
-/// are then compared with all contacts.
+/// Times the query for all pairs of triangles, the first contact or their number; then compares with all contacts.
 /// @param wrong receives a sentence if they contradict each other
 elapsed time_query(stage_runner& runner, const query_settings& query, std::string& wrong) {
     if (query.cold) evict_caches();
@@ -58,9 +56,7 @@ elapsed time_query(stage_runner& runner, const query_settings& query, std::strin
 
 }  // namespace
 
-/// Runs a scene on fresh stages and sums their times: constructing them, frame 0, and all later frames, which reuse its
-/// state.
-/// @param tested a composition of strategies or an engine
+/// Runs a scene on fresh stages and sums their times: constructing them, frame 0, and all later frames.
 /// @param settings what to run and record, and a function to call after each frame
 observation observe(scene_frames& scene, const candidate& tested, const protocol& settings) {
     observation result;

@@ -58,9 +58,8 @@ std::set<candidate_name> stopped_early(const experiment& e, const round_limits& 
     return names;
 }
 
-/// Drops the rows of a repeat that was interrupted, which can only be the last, so that all candidates run it again:
-/// ratios are formed within a repeat. It is interrupted if it has fewer rows than candidates that are not stopped
-/// early.
+/// Drops the rows of an interrupted repeat, the last, with fewer rows than candidates that are not stopped early, so
+/// that all run it again: ratios are formed within a repeat.
 /// @param share the repeats of this process
 void drop_interrupted_repeat(const experiment& e, const scene_choice& scene, const round_limits& share,
                              std::size_t candidate_count, results_folder& results) {

@@ -140,8 +140,7 @@ std::size_t stage_runner::held_bytes() const {
     return sum;
 }
 
-/// The mean over the trees of their area inflation: the surface area of their boxes relative to that of tight boxes,
-/// minus 1. Empty without a narrow phase or without trees.
+/// The mean over the trees of the area of boxes over that of tight ones, minus 1. Empty without trees.
 std::optional<double> stage_runner::box_inflation() const {
     if (!stages_.local) return std::nullopt;
     double sum = 0;
@@ -184,8 +183,7 @@ void run_frames(scene_frames& scene, stage_runner& runner, const std::function<v
     }
 }
 
-/// Adds the results of a frame to their numbers and to their digest, a hash by which runs are compared without storing
-/// their pairs. In a scene of meshes the digest covers contacts (pairs of triangles), otherwise pairs of boxes.
+/// Adds a frame's results to their numbers and digest, of contacts in a scene of meshes, otherwise of pairs of boxes.
 void tally::add(std::span<const aabb::index_pair> pairs, std::span<const aabb::contact> contacts) {
     candidates_ += pairs.size();
     if (meshes_) {

@@ -23,8 +23,7 @@ enum : int { is_done = 0, has_failed = 1, is_rejected = 2, has_no_memory = 3 };
 /// Precedes the message of an input_error.
 constexpr char rejection_mark = 0;
 
-/// Sends text to the parent process, in several writes if the pipe is full; ends this process if the parent does not
-/// read any more.
+/// Sends text to the parent, in several writes if the pipe is full; ends this process if it reads no more.
 void write_all(int pipe, std::string_view text) {
     while (!text.empty()) {
         const ssize_t n = write(pipe, text.data(), text.size());
@@ -42,8 +41,7 @@ void raise_oom_score() {
     close(file);
 }
 
-/// Does the work in the child process. Its output, and the message of an input_error after `rejection_mark`, go to the
-/// pipe; the exit status says how it ended.
+/// Does the work in the child; output, and an input_error after `rejection_mark`, go to the pipe.
 [[noreturn]] void work_and_exit(int pipe, const std::function<void(const output_sender&)>& work) {
     raise_oom_score();
     int status = has_failed;
@@ -63,7 +61,7 @@ void raise_oom_score() {
     _exit(status);
 }
 
-/// For `poll`: at least 1, since less than a millisecond may remain, which 0 would turn into a busy loop.
+/// Returns at least 1, for `poll`, since less than a millisecond may remain, which 0 would turn into a busy loop.
 int milliseconds_until(clock::time_point end) {
     const double remaining = std::chrono::duration<double, std::milli>(end - clock::now()).count();
     return static_cast<int>(std::clamp(std::ceil(remaining), 1.0, double{std::numeric_limits<int>::max()}));
@@ -102,9 +100,8 @@ ending ending_of(int status) {
 //   l bytes omission...
 constexpr char frame_line = 'f', last_line = 'l';
 
-/// The line that reports the times of all frames so far to the parent process, so that the last line describes a run
-/// that was killed: time of building, number of frames, digest, times of frame 0 and of all later frames.
-/// @param seconds since the run began
+/// The line that reports the times so far to the parent, to describe a run that was killed: time of building, number of
+/// frames, digest, times of frame 0 and of all later frames, seconds since the run began.
 std::string line_of(const observation& seen, double seconds) {
     std::ostringstream text;
     text.precision(17);
@@ -152,8 +149,7 @@ void send_run(scene_frames& scene, const candidate& tested, std::size_t frames, 
 
 }  // namespace
 
-/// Forks a process that does the work, so that it can be killed after `seconds` or when memory runs out. Returns how it
-/// ended, with the output that it sent until then.
+/// Does the work in a forked process, killed after `seconds` or out of memory; returns how it ended, and output.
 child_result run_in_child(const std::function<void(const output_sender&)>& work, double seconds) {
     child_result result;
     if (!(seconds > 0)) return result;
@@ -187,8 +183,7 @@ child_result run_in_child(const std::function<void(const output_sender&)>& work,
     return result;
 }
 
-/// Does work on the scene, from its first frame, in a child process that is killed after `seconds`. The child inherits
-/// the meshes, so they are read only once.
+/// Does work on the scene in a child process, killed after `seconds`, which inherits the meshes as read.
 child_result staged_scene::in_child(const std::function<void(scene_frames&, const output_sender&)>& work,
                                     double seconds) {
     return run_in_child(

@@ -285,7 +285,7 @@ struct attempt {
 /// "stopped after 2.1 s, in frame 3", "not run: no time was left"
 [[nodiscard]] std::string text_of(const attempt& run);
 
-/// A scene that is read once and then run in child processes, each of which starts at its first frame.
+/// A scene that is read once and then run in child processes; each starts at its first frame.
 class staged_scene {
 public:
     /// @throws aabb::input_error if the scene cannot be created.

@@ -33,9 +33,8 @@ public:
           runner_(tested, scene, aabb::instrumentation::counters),
           tally_(scene.meshes() != nullptr) {}
 
-    /// Runs a frame with work counters, and compares its pairs of boxes, and of triangles (contacts), with the ground
-    /// truth. A difference is a failure if the candidate must be exact; otherwise it is counted. Pairs of boxes are not
-    /// comparable if the candidate divides objects into parts (`whole_boxes` is false).
+    /// Runs a frame with work counters, and compares pairs of boxes and contacts with the ground truth. A difference is
+    /// a failure if the candidate must be exact. Boxes are not comparable if it divides objects (`whole_boxes`).
     void compare_frame(std::size_t frame, const aabb::ground_truth& truth) {
         runner_.update();
         runner_.search();
@@ -56,8 +55,7 @@ public:
         classify(contacts);
     }
 
-    /// The row of results.csv for all frames, without times: numbers of pairs, digest, errors, work counts and bytes.
-    /// Errors are those of contacts in a scene of meshes, those of boxes otherwise.
+    /// The row of results.csv for all frames, without times; errors are those of contacts or, without meshes, of boxes.
     [[nodiscard]] validated_row result() const {
         validated_row v;
         v.scene = choice_;
