@@ -18,8 +18,7 @@ namespace {
 
 constexpr int check_failed = 1, bad_input = 2;
 
-/// Parses the command line, which sets the command to run. Prints the version or help if it asks for them, which the
-/// parser reports by exceptions.
+/// Parses the command line, which sets the command to run; prints the version or help, for which the parser throws.
 void parse(CLI::App& program, int argc, char** argv) {
     try {
         program.parse(argc, argv);

@@ -30,11 +30,10 @@ public:
 
     void add(entry added) { entries_.push_back(std::move(added)); }
 
-    /// Times each test on a batch of pairs, in an order that varies with the batch, and adds its errors to its point
-    /// (its sums so far).
+    /// Times each test on a batch of pairs, in an order that varies with the batch, and adds its errors to its point.
     /// @param pairs their number in the batch
     /// @param work runs a test; it is timed
-    /// @param judge compares the results of the last test with the ground truth, and adds to its point; untimed
+    /// @param judge compares its results with the ground truth, and adds to its point; untimed
     template <class Work, class Judge>
     void run_batch(std::size_t pairs, Work work, Judge judge) {
         run_round(entries_, batches_, [&](entry& e) {
@@ -69,7 +68,6 @@ constexpr std::size_t pairs_in_batch = 4096;
 class error_run {
 public:
     /// Makes every test of every curve of the study; a curve is a test at several values of its parameter.
-    /// @param name of the set of pairs, in reports
     /// @param in_double leaves out the tests that take floats only
     error_run(const error_study& study, const std::string& name, bool in_double) {
         for (const error_curve& curve : study.curves)
@@ -97,8 +95,7 @@ public:
     [[nodiscard]] std::vector<error_point> points() { return methods_.points(&error_point::ns_per_pair); }
 
 private:
-    /// Adds the errors of the last test: a result is 1 if it reports an intersection, and the truth is 1 if there is
-    /// one.
+    /// Adds the errors of the last test; results and truth are 1 for an intersection.
     void count(error_point& point) const {
         point.count += results_.size();
         for (std::size_t i = 0; i < results_.size(); ++i) {
@@ -112,8 +109,7 @@ private:
     std::vector<std::uint8_t> truth_, results_;
 };
 
-/// Runs the tests of a study on the generated pairs of a set, batch by batch, so that memory does not grow with their
-/// number.
+/// Runs the tests of a study on the pairs of a set, batch by batch, so that memory does not grow with their number.
 /// @param done the pairs of all sets so far, for the progress shown
 template <class Real>
 std::vector<error_point> run_pairs(const error_study& study, const pair_set& set, progress& shown, std::size_t& done) {
@@ -129,9 +125,8 @@ std::vector<error_point> run_pairs(const error_study& study, const pair_set& set
     return run.points();
 }
 
-/// Appends the pairs of triangles of two objects whose boxes overlap. A broad phase over the boxes of all triangles of
-/// both finds them in less than quadratic time. Its pairs within one object are dropped; A's triangles have the ids
-/// below A's triangle count.
+/// Appends the pairs of triangles of two objects whose boxes overlap, by a broad phase over the triangles of both, in
+/// less than quadratic time. Pairs within one object are dropped; A's triangles have the lesser ids.
 void add_overlapping(const aabb::mesh& a, const aabb::pose& pose_a, const aabb::mesh& b, const aabb::pose& pose_b,
                      std::vector<aabb::triangle_pair<float>>& overlapping) {
     const aabb::box bounds_b = aabb::bounds_of(b);
@@ -154,8 +149,7 @@ void add_overlapping(const aabb::mesh& a, const aabb::pose& pose_a, const aabb::
             overlapping.push_back({a.triangle(p.a), images[p.b - a.triangle_count()]});
 }
 
-/// The pairs of triangles with overlapping boxes, of any two objects of a scene, over all frames. The second triangle
-/// is transformed into the frame of the first mesh, as in the leaves of a tree.
+/// The pairs of triangles with overlapping boxes, of any two objects, over all frames, in the frame of the first mesh.
 std::vector<aabb::triangle_pair<float>> overlapping_triangles(const scene_choice& choice) {
     const std::unique_ptr<aabb::mesh_scene> scene = make_mesh_scene(choice);
     std::vector<aabb::triangle_pair<float>> overlapping;
@@ -197,8 +191,7 @@ void raise_to(aabb::corner_errors& greatest, const aabb::corner_errors& errors) 
 /// Runs the tests that construct the intersection of two triangles on the hits (intersecting pairs) of one class.
 class hit_run {
 public:
-    /// Makes the tests that can construct an intersection, our own strategies and those of libraries, for a set of
-    /// pairs.
+    /// Makes all tests, also of libraries, that can construct an intersection.
     explicit hit_run(const pair_set& set) {
         const std::vector<std::string> strategies = aabb::strategy_names(aabb::strategy_kind::triangle);
         for (const std::string& name : constructing_tests()) {
@@ -211,9 +204,8 @@ public:
         }
     }
 
-    /// Times the tests on some hits (intersecting pairs), and compares each constructed intersection with CGAL's exact
-    /// one. An intersection is `different` if its kind or number of corners is wrong, and `outside` if a corner's error
-    /// exceeds the bound that the test states.
+    /// Times the tests on some hits, and compares each constructed intersection with CGAL's exact one: it is
+    /// `different` if kind or number of corners are wrong, and `outside` if an error exceeds the stated bound.
     void run_batch(std::span<const aabb::triangle_pair<double>> hits) {
         std::deque<aabb::exact_intersection> exact;
         for (const aabb::triangle_pair<double>& hit : hits) exact.emplace_back(hit.a, hit.b);

@@ -14,9 +14,8 @@ namespace {
 /// Two numbers of a method; less is better in both.
 using cost = std::array<double, 2>;
 
-/// The Pareto front of methods with two costs: the indices of those that no other method beats in one cost and equals
-/// or beats in the other, in ascending order of the first; of equal methods only one. In that order, a method is on the
-/// front if its second cost is a new minimum.
+/// The Pareto front of methods with two costs, by index, ascending in the first cost: those that no other beats in one
+/// and equals or beats in the other, of equal ones only one. In that order, the second cost is a new minimum.
 /// @param cost_of returns the two costs of a method
 template <class Method, class CostOf>
 std::vector<std::size_t> front_of(const std::vector<Method>& methods, CostOf cost_of) {
@@ -208,8 +207,7 @@ private:
         return m.name + (m.unit.empty() ? "" : " (" + m.unit + ")");
     }
 
-    /// The two metrics of a composition in this scene; empty if it did not run in it. A candidate's metrics are in the
-    /// order of `metrics()`.
+    /// The two metrics of a composition in this scene; empty if it did not run in it.
     [[nodiscard]] std::optional<plotted_composition> values_of(const aabb::composition& c) const {
         const candidate_name name = candidate_of(c, has_meshes(scene_.scene)).name;
         const auto candidate = std::ranges::find(scene_.candidates, name, &candidate_summary::name);
@@ -315,8 +313,7 @@ std::string_view title_of(pair_group group) {
     return titles[static_cast<std::size_t>(group)];
 }
 
-/// One row per method, from the least to the greatest share of wrong results. FN is the share of false negatives among
-/// intersecting pairs, FP that of false positives among the others.
+/// One row per method, from the least share of wrong results: FN among intersecting pairs, FP among the others.
 table error_summary(std::span<const error_point> points, pair_group group) {
     table t = empty_table({"triangle"}, {"ns/pair", "wrong", "FN", "FP"});
     std::vector<pooled> methods = pooled_over(of_group(points, group));
@@ -328,8 +325,7 @@ table error_summary(std::span<const error_point> points, pair_group group) {
     return t;
 }
 
-/// One row per method, one column per set of pairs in the group: the shares of false negatives and false positives,
-/// joined by "+".
+/// One row per method, one column per set of pairs: shares of false negatives and false positives, joined by "+".
 table errors_by_set(std::span<const error_point> points, pair_group group) {
     const std::vector<error_point> subset = of_group(points, group);
     table t = empty_table({"triangle"});
@@ -410,8 +406,7 @@ std::vector<figure> metric_figures(const error_study& study, std::span<const sce
     return figures;
 }
 
-/// A sentence for each scene and plot of a study about both ends of its Pareto front, where no composition is best in
-/// both metrics.
+/// A sentence per scene and plot about both ends of its Pareto front, unless one composition is best in both metrics.
 std::vector<std::string> metric_statements(const error_study& study, std::span<const scene_summary> scenes) {
     std::vector<std::string> statements;
     for (const scene_summary& scene : scenes)

@@ -47,8 +47,7 @@ std::string text_of(const candidate_name& name, aabb::stage stage) {
 /// Enough that buffers have grown and data that is kept between frames exists.
 constexpr std::size_t frames_before_bytes = 2;
 
-/// Runs a candidate on the first frames, and describes each stage: its strategies, its bytes by part, the plans that it
-/// decided on (such as whether to keep a Verlet list), and the features that it leaves out.
+/// Runs a candidate on the first frames, and describes each stage: strategies, bytes by part, plans, omissions.
 std::string explanation_of(scene_frames& scene, const candidate& tested) {
     stage_runner runner(tested, scene, aabb::instrumentation::none);
     run_frames(scene, runner, [](const searched_frame&) {}, frames_before_bytes);
@@ -69,8 +68,7 @@ std::string explanation_of(scene_frames& scene, const candidate& tested) {
     return text + indented_list("left out", left_out);
 }
 
-/// Prints the explanation of a candidate, or why it did not finish. It is made in a child process, so that a time limit
-/// can end it.
+/// Prints the explanation of a candidate, made in a child process with a time limit, or why it did not finish.
 void print_candidate(staged_scene& scene, const candidate& tested, const time_limits& limits) {
     const child_result result =
         scene.in_child([&](scene_frames& frames, const output_sender& send) { send(explanation_of(frames, tested)); },
@@ -82,8 +80,7 @@ void print_candidate(staged_scene& scene, const candidate& tested, const time_li
                                      : hanging("    ", "bytes and plans: " + reason_of(result)) + "\n");
 }
 
-/// Says which engines and strategy kinds of the config do not apply to the scene: those of the narrow phase, if it has
-/// no meshes.
+/// Says which engines and strategy kinds do not apply: those of the narrow phase, if the scene has no meshes.
 void print_idle_parts(const experiment& e, const scene_choice& scene) {
     for (const std::string& sentence : idle_engines(e, scene, "this scene")) print("  " + sentence + "\n");
     if (has_meshes(scene)) return;
@@ -117,8 +114,7 @@ void print_selected(const std::vector<aabb::selected_strategy>& selected) {
     print_wrapped_table(t, 2);
 }
 
-/// Explains the composition that `auto` selects for the scene, and what each of its choices saves over the
-/// alternatives.
+/// Explains the composition that `auto` selects for the scene, and what each choice saves over the alternatives.
 /// @param named the strategies that the user has fixed; `auto` selects the others
 /// @returns whether all compositions that ran find the same pairs
 bool explain_automatic(staged_scene& scene, const aabb::named_strategies& named, const time_limits& limits) {
@@ -136,8 +132,7 @@ bool explain_automatic(staged_scene& scene, const aabb::named_strategies& named,
     return print_savings(scene, c, limits);
 }
 
-/// Explains the compositions of a config in one scene: first those that `auto` selects, with the savings of their
-/// choices, then the named ones.
+/// Explains the compositions of a config in one scene: those that `auto` selects, with savings, then the named ones.
 /// @returns whether all compositions that ran find the same pairs
 bool explain_scene(const experiment& e, staged_scene& scene, const time_limits& limits) {
     print_measures(scene, limits);
@@ -160,8 +155,7 @@ bool explain_scene(const experiment& e, staged_scene& scene, const time_limits& 
 
 }  // namespace
 
-/// Explains the compositions of a config in each of its scenes, or `auto` in one scene: what runs, why it was selected,
-/// and what it saves.
+/// Explains the compositions of a config in its scenes, or `auto` in one: what runs, why, and what it saves.
 /// @returns the exit status: 1 if compositions disagree about the pairs
 int explain(const explain_request& request) {
     experiment e;
@@ -184,8 +178,7 @@ int explain(const explain_request& request) {
     return agree ? 0 : 1;
 }
 
-/// Prints a table whose cells in one column are wrapped to the width that the other columns leave. A wrapped row takes
-/// several lines.
+/// Prints a table; cells of one column are wrapped to the width that the others leave.
 void print_wrapped_table(const table& t, std::size_t column) {
     constexpr std::size_t between = 2, least_room = 20;  // characters
     std::size_t other_widths = 0;

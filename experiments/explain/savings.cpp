@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t most_frames = 40;
 constexpr std::size_t rounds = 5;
-/// With more objects, only some kinds are varied: the slower sort and sweep strategies would take minutes.
+/// Scenes with more objects vary only some kinds: the slower sort and sweep strategies would take minutes.
 constexpr std::size_t most_objects_to_vary_every_kind = 20'000;
 
 /// A composition that runs in the same rounds as the selected one.
@@ -33,9 +33,7 @@ std::string label_of(const variant& v) {
     return v.name == "none" ? v.kind + " none" : v.name;
 }
 
-/// The exact compositions that apply to the scene and differ from the selected one in the strategy of one kind: they
-/// show what the selected strategy saves.
-/// @param meshes whether the scene has meshes
+/// The exact compositions that apply to the scene and differ from the selected one in the strategy of one kind.
 std::vector<variant> variants_by_strategy(const aabb::composition& selected, aabb::strategy_kind kind, bool meshes) {
     std::vector<variant> variants;
     for (const aabb::strategy_info& info : aabb::strategies(kind)) {
@@ -49,9 +47,7 @@ std::vector<variant> variants_by_strategy(const aabb::composition& selected, aab
     return variants;
 }
 
-/// Compositions in which one strategy has other settings, with features that the selected composition may leave out:
-/// they show what leaving them out saves.
-/// @param meshes whether the scene has meshes
+/// Compositions in which one strategy has other settings, with features that the selected one may leave out.
 std::vector<variant> variants_by_settings(const aabb::composition& selected, aabb::strategy_kind kind, bool meshes) {
     std::vector<variant> variants;
     for (const aabb::strategy_info& info : aabb::strategies(kind))
@@ -114,8 +110,7 @@ void print_omissions(std::span<const variant> variants) {
           "\n");
 }
 
-/// The same candidate, made with counters of all work, whatever instrumentation is asked for: its time shows what
-/// counting costs.
+/// The same candidate with counters of all work: its time shows what counting costs.
 candidate with_counters(candidate tested) {
     const auto counting = [](const auto& make) {
         return [make](aabb::instrumentation) { return make(aabb::instrumentation::counters); };
@@ -133,8 +128,7 @@ std::vector<std::string> ratio_cells_of(const variant& v, std::span<const observ
             fmt::format("{:.2f}-{:.2f}", ratio.least, ratio.greatest)};
 }
 
-/// Adds a row with a variant's times and bytes, and the ratio of its times to those of the selected composition; "-" if
-/// no run finished.
+/// Adds a row with a variant's times and bytes, and the ratio to the selected composition; "-" if no run finished.
 void add_row(table& t, const variant& v, const variant& selected) {
     const std::vector<std::string> ratio =
         &v == &selected ? std::vector<std::string>{"1", "-"} : ratio_cells_of(v, selected.times);
@@ -155,8 +149,7 @@ void print_unfinished(const std::vector<variant>& variants) {
     if (!t.rows.empty()) print(to_text(t, output_width()) + "\n");
 }
 
-/// Prints which variants find other pairs than the selected composition, the first. All are exact, so one of the two is
-/// wrong.
+/// Prints which variants find other pairs than the selected composition, the first; all are exact, so one is wrong.
 /// @returns whether the results of all variants agree
 bool print_disagreements(const std::vector<variant>& variants) {
     // Inexact candidates find other pairs by design, and move a reactive scene differently.
@@ -178,7 +171,6 @@ struct variant_lists {
 };
 
 /// Collects the variants of the selected composition that differ in one kind of strategy.
-/// @param meshes whether the scene has meshes
 /// @param is_small varies all kinds; otherwise a slow sort, partition or sweep would take too long, so only those kinds
 /// are varied that are compiled alone (`prepare`, `build`)
 variant_lists variants_of(const aabb::composition& selected, bool meshes, bool is_small) {
@@ -207,8 +199,7 @@ table savings_table(std::span<const variant> variants) {
 
 }  // namespace
 
-/// All features that a composition leaves out: those that its stages report, and those of strategies that are no part
-/// of a stage but compiled alone (`prepare`, `build`).
+/// All features that a composition leaves out: those of its stages, and of strategies compiled alone.
 std::vector<aabb::omission> omissions_of(const candidate_name& name, std::vector<aabb::omission> by_stages) {
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
         // The stages report the omissions of all other kinds.
@@ -222,9 +213,8 @@ std::vector<aabb::omission> omissions_of(const candidate_name& name, std::vector
     return by_stages;
 }
 
-/// Prints what each choice of the selected composition saves, measured by runs that are interleaved with those of
-/// variants, which differ from it in one strategy. Variants with other settings of a strategy serve only
-/// `print_omissions`, which shows what the absence of their features saves.
+/// Prints what each choice of the selected composition saves, measured by runs interleaved with those of variants that
+/// differ in one strategy. Variants with other settings serve only `print_omissions`.
 /// @returns false if variants report different pairs
 bool print_savings(staged_scene& staged, const aabb::composition& selected, const time_limits& limits) {
     const scene_frames& scene = staged.scene();

@@ -12,8 +12,7 @@ namespace {
 
 using row_list = std::vector<const extreme_row*>;
 
-/// Groups rows (each the result of one candidate in one scene) by a text, in order of first appearance.
-/// @param text a member of a row, or a function of it, that gives the text
+/// Groups rows by a text, which a member or a function of a row gives, in order of first appearance.
 template <class Text>
 std::vector<std::pair<std::string, row_list>> grouped_by(std::span<const extreme_row> rows, Text text) {
     std::vector<std::pair<std::string, row_list>> groups;
@@ -63,8 +62,7 @@ std::string sum_cell(const row_list& rows) {
     return std::to_string(candidates.size()) + (rejected ? " rejected" : " exact");
 }
 
-/// A table cell for one candidate: "exact", "rejected", or "WRONG" if a result is not as expected. A candidate that may
-/// be inexact gets its false negatives and false positives, "-12 +3". A candidate that did not run gets "-".
+/// A cell for one candidate: "exact", "rejected", "WRONG", "-12 +3" if it may be inexact, or "-" if it did not run.
 std::string cell_of(const row_list& rows) {
     if (rows.empty()) return "-";
     std::uint64_t false_negatives = 0, false_positives = 0;
@@ -82,8 +80,7 @@ std::string cell_of(const row_list& rows) {
 
 /// A table with one row per scene, or per class of cases, and one column per candidate.
 /// @param columns the first columns: the scene or class, then those of the summary
-/// @param key the member of a row by which rows are grouped
-/// @param names the candidates
+/// @param key the member by which rows are grouped
 /// @param summary_cells returns the cells of the summary of a group
 template <class Summary>
 table candidate_table(std::vector<column> columns, std::span<const extreme_row> rows, std::string extreme_row::* key,
@@ -105,8 +102,7 @@ std::vector<extreme_row> filtered(std::span<const extreme_row> rows, Wanted want
     return selected;
 }
 
-/// The errors of inexact triangle tests, one row per scene or class of cases, one column per test. Rows without errors
-/// are omitted.
+/// The errors of inexact triangle tests by scene or class of cases, without rows that have none.
 /// @param key the member that holds the scene or the class
 table wrong_table(const std::string& title, std::span<const extreme_row> rows, std::string extreme_row::* key) {
     const auto tests = filtered(rows, [](const extreme_row& row) { return row.role == candidate_role::triangle_test; });
@@ -188,8 +184,7 @@ table inexact_scene_table(std::span<const extreme_row> rows) {
                        &extreme_row::scene);
 }
 
-/// One row per candidate that may be inexact: its false negatives and false positives in scenes of meshes, by the class
-/// of the wrong pair (touching, coplanar, …).
+/// One row per candidate that may be inexact: its errors in scenes of meshes, by class of the wrong pair.
 table class_table(std::span<const extreme_row> rows) {
     table t = empty_table({"candidate"});
     for (const std::string_view name : aabb::difference_class_names) t.columns.push_back({std::string(name)});

@@ -10,8 +10,7 @@ namespace aabblab {
 
 namespace {
 
-/// The strategy with each combination of those parameters whose values are names, not numbers. A default is not written
-/// out, so the first choice is the strategy without settings.
+/// The strategy with each combination of its parameters' named values; the first, all defaults, has no settings.
 std::vector<aabb::strategy_choice> with_named_values(aabb::strategy_kind kind, const std::string& name) {
     const auto info = std::ranges::find(aabb::strategies(kind), name, &aabb::strategy_info::name);
     std::vector<aabb::strategy_choice> choices{{name, {}}};
@@ -26,8 +25,7 @@ std::vector<aabb::strategy_choice> with_named_values(aabb::strategy_kind kind, c
     return choices;
 }
 
-/// The composition with each combination of the named values of the parameters of its strategies: each strategy kind of
-/// the stage multiplies the compositions so far.
+/// The composition with each combination of the named values of the parameters of its strategies.
 std::vector<aabb::composition> with_named_values(const aabb::composition& c, aabb::stage stage) {
     std::vector<aabb::composition> compositions{c};
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
@@ -72,8 +70,7 @@ struct named_test {
     std::unique_ptr<aabb::triangle_test> test;
 };
 
-/// All triangle tests to run on the cases: the strategies, with each combination of named values of their parameters,
-/// then those of libraries.
+/// All triangle tests: the strategies, with each combination of named values, then those of libraries.
 std::vector<named_test> named_triangle_tests() {
     std::vector<named_test> tests;
     for (const aabb::strategy_info& info : aabb::strategies(aabb::strategy_kind::triangle))
@@ -128,8 +125,7 @@ struct named_candidate {
     candidate implementation;
 };
 
-/// All candidates to run on the scenes of a stage: exact compositions, engines, and, for the narrow phase, the default
-/// composition with each inexact triangle test.
+/// All candidates of a stage: exact compositions, engines and, for the narrow phase, inexact triangle tests.
 /// @param named_values includes every combination of those parameters whose values are names
 std::vector<named_candidate> candidates(aabb::stage stage, bool named_values) {
     const bool meshes = stage == aabb::stage::local_detection;
@@ -146,8 +142,7 @@ std::vector<named_candidate> candidates(aabb::stage stage, bool named_values) {
     return list;
 }
 
-/// Runs a composition or an engine on every case of two triangles, and appends a row with its errors per case. The
-/// triangles of case i are the meshes 2i and 2i + 1, without poses; all queries run on them in both orders.
+/// Runs a candidate on every case of two triangles, the meshes 2i and 2i + 1, by all queries in both orders.
 void run_on_cases(std::span<const aabb::triangle_case> cases, std::span<const aabb::mesh> meshes,
                   const named_candidate& tested, std::vector<extreme_row>& rows) {
     const std::unique_ptr<aabb::local_stage> stage = tested.implementation.make_local(aabb::instrumentation::none);
@@ -166,8 +161,7 @@ void run_on_cases(std::span<const aabb::triangle_case> cases, std::span<const aa
     }
 }
 
-/// Runs the candidates on one scene, and appends a row for each with the result, and whether that is as expected.
-/// @param judge has the scene and its ground truth
+/// Runs the candidates on the judge's scene, and appends a row for each with the result.
 void run_candidates(const aabb::extreme_judge& judge, std::span<const named_candidate> list,
                     std::vector<extreme_row>& rows) {
     const aabb::extreme_scene& scene = judge.scene();
@@ -209,8 +203,7 @@ std::vector<extreme_row> run_triangle_cases(std::span<const aabb::triangle_case>
     return rows;
 }
 
-/// Runs every candidate on every scene; at full size, compositions also with each named value of their parameters.
-/// @returns a row per candidate and scene
+/// Runs every candidate on every scene, a row each; at full size, also with each named value of parameters.
 std::vector<extreme_row> run_extreme_scenes(std::span<const aabb::extreme_scene> scenes, aabb::extreme_size size) {
     const bool named_values = size == aabb::extreme_size::full;
     const auto for_boxes = candidates(aabb::stage::global_search, named_values);

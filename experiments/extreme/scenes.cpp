@@ -10,8 +10,7 @@ namespace {
 /// Meshes of `aabblab data` that have triangles of zero area.
 constexpr std::array<const char*, 2> degenerate_meshes = {"degtri_sliding.off", "mpi.off"};
 
-/// A scene of 40 generated triangle pairs of a class, such as coplanar ones. The first triangles of the pairs form one
-/// mesh, the second triangles the other, all where they were generated.
+/// A scene of 40 generated triangle pairs of a class: first triangles in one mesh, second ones in the other.
 aabb::extreme_scene scene_of(const pair_class_info& info) {
     constexpr std::size_t count = 40;
     aabb::extreme_scene scene{.name = "pairs_" + std::string(info.name), .summary = std::string(info.summary)};
@@ -33,8 +32,7 @@ aabb::extreme_scene scene_of(const pair_class_info& info) {
     return scene;
 }
 
-/// A scene of a mesh from a file and a copy of it: in frame 0 in the same place, in frame 1 displaced by a hundredth of
-/// its longest extent.
+/// A mesh from a file and a copy, first in the same place, then displaced by a hundredth of its longest extent.
 aabb::extreme_scene scene_of(const std::string& file) {
     aabb::extreme_scene scene{.name = file,
                               .summary = "a real mesh with zero-area triangles, against a copy of itself"};
@@ -52,8 +50,7 @@ aabb::extreme_scene scene_of(const std::string& file) {
 
 }  // namespace
 
-/// All scenes of the suite: fixed ones, generated pairs by class, and those real meshes whose files exist. A note says
-/// which are left out.
+/// All scenes of the suite: fixed ones, generated pairs, and real meshes whose files exist; a note names the others.
 extreme_list all_extreme_scenes(aabb::extreme_size size) {
     extreme_list list{aabb::extreme_scenes(size), {}};
     for (const pair_class_info& info : pair_classes()) list.scenes.push_back(scene_of(info));

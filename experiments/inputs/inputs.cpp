@@ -6,8 +6,7 @@ import aabblab.output;
 
 namespace aabblab {
 
-/// Parses a finite number, rounded to the nearest Real. A float is not parsed as a double first, since two roundings
-/// may miss the nearest float.
+/// Parses a finite number to the nearest Real; not as a double first, since two roundings may miss it.
 template <class Real>
 Real parse_number(const std::string& text) {
     char* end = nullptr;
@@ -138,7 +137,7 @@ given_poses read_poses(const std::string& file) {
     return parsed;
 }
 
-/// Loads meshes by name, and tells the user how reading changed each.
+/// Loads meshes by name, and notes for the user how reading changed each.
 std::vector<aabb::mesh> read_meshes(const std::vector<std::string>& names) {
     std::vector<aabb::mesh> meshes;
     for (const std::string& name : names) {
@@ -186,9 +185,8 @@ bool is_config_name(const std::string& argument) {
     return argument.ends_with(".toml");
 }
 
-/// The scene of a command without a config: a recording, one or two meshes, or a motion file and its meshes. Notes what
-/// readers of mesh files leave out of them. A name that is no file is taken for a mesh, whose reader reports it. Meshes
-/// keep their size, and two meshes move as with seed 1.
+/// The scene of a command without a config, with notes of what readers of mesh files leave out. A name that is no file
+/// is taken for a mesh, whose reader reports it. Meshes keep their size, and two meshes move as with seed 1.
 scene_choice scene_of_arguments(const std::vector<std::string>& arguments) {
     const std::string& first = arguments.front();
     if (is_config_name(first))

@@ -68,8 +68,7 @@ std::optional<double> size_ratio_of(std::span<const aabb::box> boxes) {
     return *median > 0 ? std::optional(longest / *median) : std::nullopt;
 }
 
-/// Inversions per object: pairs of boxes whose order along the axis, by lower bound, differs from that of the previous
-/// frame. Insertion sort, starting from the previous order, takes as many swaps.
+/// Inversions per object: pairs of boxes whose order along the axis changed, the swaps of an insertion sort.
 double inversions_of(std::span<const aabb::box> before, std::span<const aabb::box> after, int axis) {
     std::vector<std::uint32_t> order(before.size());
     std::iota(order.begin(), order.end(), 0U);
@@ -82,9 +81,8 @@ double inversions_of(std::span<const aabb::box> before, std::span<const aabb::bo
 
 }  // namespace
 
-/// Measures the sizes and overlaps of boxes, and the number of overlapping pairs that uniformly distributed boxes would
-/// have: on an axis, two intervals of mean length e in a range of width w overlap with a probability of about 2 e / w,
-/// so n boxes have n (n - 1) / 2 pairs times the product of these probabilities.
+/// Measures sizes and overlaps of boxes, and the pairs that uniformly distributed boxes would have: on an axis, two
+/// intervals of mean length e in a range of width w overlap with a probability of about 2 e / w.
 box_measures measure_boxes(std::span<const aabb::box> boxes) {
     box_measures m;
     if (boxes.empty()) return m;
@@ -145,8 +143,7 @@ scene_measures measure_scene(const scene_choice& choice) {
     return measure_scene(scene);
 }
 
-/// Measures the boxes of the first frame, and the mean motion over the first frames. Runs a search with the default
-/// strategies in these frames, since the number of overlapping pairs is a measure, too.
+/// Measures the boxes of the first frame, and the mean motion and overlapping pairs of the first frames.
 scene_measures measure_scene(scene_frames& scene) {
     scene_measures m;
     m.objects = scene.objects();
@@ -189,8 +186,7 @@ scene_measures measure_scene(scene_frames& scene) {
     return m;
 }
 
-/// The measures as rows to print: a name, and its value with a unit and explanation. Lengths are in typical extents
-/// (the mean edge of a box), so that scenes of any scale can be compared.
+/// The measures as rows to print, with lengths in typical extents (mean edges of a box), to compare any scales.
 table measures_table(const scene_measures& m) {
     table measured = empty_table({"measured", ""});
     const auto add = [&](const char* name, const std::string& value) { measured.rows.push_back({name, value}); };

@@ -26,8 +26,7 @@ std::string address_of(const std::string& svg) {
 
 }  // namespace
 
-/// The table in HTML, in an element that scrolls if it is wider than the page. Columns of numbers are of a class of
-/// their own, for their alignment.
+/// The table in HTML, in an element that scrolls; columns of numbers have a class, for their alignment.
 std::string to_html(const table& t) {
     const auto cell = [&](const std::string& tag, std::size_t k, const std::string& text) {
         return element(tag, {{"class", t.columns[k].is_number ? "number" : ""}}, markup_text(text));

@@ -65,8 +65,7 @@ bool hit_filter::keeps(aabb::intersection_kind kind) {
     return true;
 }
 
-/// Makes the stages of a search, one or both, from the strategies that the user names; the others are selected for the
-/// scene. If the user chooses an engine, it takes the place of the last stage.
+/// Makes the stages of a search from named and selected strategies; an engine takes the place of the last stage.
 search_method method_of(const search_choice& choice, const aabb::scene_traits& traits) {
     constexpr auto uncounted = aabb::instrumentation::none;
     const aabb::composition c = select_composition(choice.named, traits);
@@ -85,8 +84,7 @@ search_method method_of(const search_choice& choice, const aabb::scene_traits& t
     return method;
 }
 
-/// Searches every frame, and sums up times and results.
-/// @param method its stages are moved out; its name is for messages
+/// Searches every frame, and sums up times and results; moves the stages out of `method`.
 /// @param rows receives every result and is committed at the end; may be null
 /// @param hits which pairs of triangles are reported, and whether with their intersection
 frames_result search_frames(scene_frames& scene, search_method& method, number_table* rows, const hit_choice& hits) {

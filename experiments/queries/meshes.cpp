@@ -50,8 +50,7 @@ bool share_vertex(const aabb::mesh& m, aabb::index_pair pair) {
     return shared_vertices(m, pair) > 0;
 }
 
-/// Merges all pairs a < b of triangles that share a vertex with other pairs. There may be very many, so that only those
-/// of one triangle a at a time are in memory.
+/// Merges all pairs a < b of triangles that share a vertex with other pairs, by triangle a, since there may be many.
 /// @param others sorted pairs of triangles that share no vertex
 /// @param take receives the sorted pairs of each triangle in turn
 /// @returns the number of pairs that share a vertex
@@ -129,8 +128,7 @@ bool is_reported(const aabb::mesh& m, aabb::index_pair pair, self_pairs wanted) 
            aabb::self_intersection::intersects(m.given_triangle(pair.a), m.given_triangle(pair.b));
 }
 
-/// Runs the query of two meshes, or of one mesh with itself. Within one mesh, neighbours, which share a vertex and are
-/// not reported, are counted separately.
+/// Runs the query. Within one mesh, neighbours, which share a vertex and are not reported, are counted separately.
 /// @param neighbours_too whether neighbours are stored besides
 query_result result_of(stage_runner& runner, const mesh_query& query, const aabb::mesh& m, bool neighbours_too) {
     query_result result;
@@ -160,10 +158,8 @@ public:
     pair_record(const mesh_query& query, const scene_frames& scene, mesh_result& result, number_table* rows)
         : query_(query), scene_(scene), result_(result), method_(result.method), rows_(rows) {}
 
-    /// Records the pairs of one pose: removes those that only touch unless they are wanted, counts the rest by kind,
-    /// and writes them. Neighbours, pairs that share a vertex, are among the pairs or else follow from the mesh; then
-    /// their number must be the one that the query counted.
-    /// @param neighbours_too whether the pairs include them
+    /// Records the pairs of one pose: removes those that only touch unless wanted, counts the rest by kind, and writes
+    /// them. Neighbours, unless among the pairs (`neighbours_too`), follow from the mesh; the query has counted them.
     void add(std::uint32_t pose, query_result hits, bool neighbours_too) {
         pose_ = pose;
         sort_rows(hits.pairs);
@@ -200,8 +196,7 @@ private:
         }
     }
 
-    /// Writes a row: the triangles a and b, followed by the number of vertices that they share if both are of one mesh,
-    /// or preceded by the pose if there are several.
+    /// Writes a row: the pose if there are several, the triangles, and in one mesh the number of shared vertices.
     void add_row(const intersecting_pair& pair) {
         const auto [a, b] = pair.triangles;
         const std::string cells = pair.common ? to_cells(*pair.common) : "";
@@ -235,8 +230,7 @@ std::optional<double> bytes_per_triangle_of(const mesh_result& result) {
 
 }  // namespace
 
-/// Runs the query for each pose of the second mesh, several times if it is to be timed. Times each query on its own,
-/// and records only the results of the first repeat.
+/// Runs and times the query for each pose of the second mesh, several times if asked; records the first repeat.
 mesh_result search_meshes(const mesh_query& query, const search_choice& choice, std::vector<aabb::mesh> meshes,
                           const aabb::pose& pose_a, given_poses poses_b, number_table* rows) {
     const std::size_t poses = poses_b.poses.size();

@@ -30,7 +30,7 @@ private:
 
 /// The hits of each `intersection_kind`; those of an inexact method may have `none`.
 using kind_counts = std::array<std::uint64_t, aabb::intersection_kind_names.size()>;
-/// For JSON, by the kind's name; without `none` if no hit has it.
+/// Counts for JSON, by the kind's name; without `none` if no hit has it.
 [[nodiscard]] std::map<std::string, std::uint64_t> by_name(const kind_counts& counts);
 /// "12 touch in a point, 10 pass through each other"; a line without the kinds that no hit has, or nothing.
 [[nodiscard]] std::string to_text(const kind_counts& counts);

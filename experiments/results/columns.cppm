@@ -146,7 +146,7 @@ template <class Row, class Columns>
 /// Rejects tables whose header differs from the names of the columns.
 void require_header(const std::string& file, const csv_record& header, const std::vector<std::string>& expected);
 
-/// Reads the rows of a table from its records, of which the first is the header.
+/// Reads the rows of a table from its records; the first is the header.
 /// @param columns defines the table: `columns(row, field)` calls `field(name, member)` for each column
 /// @param later columns that may be absent, since files of earlier versions lack them
 /// @param on_row is called with each row and the line at which it begins

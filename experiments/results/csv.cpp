@@ -11,8 +11,7 @@ class csv_reader {
 public:
     csv_reader(std::string_view text, const std::string& file) : text_(text), file_(file) {}
 
-    /// Reads the record at the position `at_`: a line, or several if a quoted field has line breaks.
-    /// @returns false if the text ends before the record does, as after a crash while it was written
+    /// Reads a record, of several lines if a quoted field has line breaks; false if the text ends within it.
     bool read(csv_record& record) {
         record.line = line_;
         do {

@@ -160,8 +160,7 @@ bool set_parameters(scene_choice& scene, const std::string& text) {
     return true;
 }
 
-/// The manifest of a run as JSON: what was measured and how. With a seal, after the run, it has checksums of the
-/// tables, and of itself.
+/// The manifest of a run as JSON. With a seal, after the run, it has checksums of the tables, and of itself.
 std::string manifest_text(const experiment_record& e, const std::string& date, const scene_digests& digests,
                           const std::optional<results_seal>& seal) {
     json scenes = json::array();

@@ -26,8 +26,7 @@ struct known_scene {
 };
 using known_scenes = std::map<scene_choice, known_scene>;
 
-/// Rejects a row whose scene is not in the manifest, or that is exact and has another digest (hash of the pairs found)
-/// than the manifest states for the scene.
+/// Rejects a row whose scene is not in the manifest, or that is exact and has another digest than the scene.
 /// @param place for messages: "results.csv:17: "
 void require_known(const known_scenes& known, const row& r, const std::string& place) {
     const auto entry = known.find(r.scene);

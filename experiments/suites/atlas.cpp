@@ -16,8 +16,7 @@ constexpr std::array<part, 3> parts{{{"atlas", false}, {"atlas_large", false}, {
 
 }  // namespace
 
-/// Runs the experiments of the atlas, which compares all compositions and engines in many scenes. All configs are read
-/// first, so that an invalid one is reported before the long run.
+/// Runs the experiments of the atlas. All configs are read first, so that an invalid one is reported early.
 /// @param quick applies the settings of the configs for a short trial run
 /// @returns a sentence for each candidate with wrong results
 std::vector<std::string> measure_atlas(const std::filesystem::path& folder, bool quick) {

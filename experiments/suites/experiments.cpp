@@ -77,8 +77,7 @@ void print_scenes(const experiment& e, std::vector<scene_summary> scenes, printe
     flush_output();
 }
 
-/// Prints a table over all scenes with the same baseline (the first candidate of a scene), to which its ratios are:
-/// scenes of boxes and of meshes have different ones.
+/// Prints a table over all scenes with the same baseline: scenes of boxes and of meshes have different ones.
 void print_overall(std::span<const scene_summary> scenes) {
     std::map<candidate_name, std::vector<scene_summary>> by_baseline;
     for (const scene_summary& scene : scenes) by_baseline[scene.candidates[0].name].push_back(scene);
@@ -101,8 +100,7 @@ bool is_multi_threaded(const experiment& e) {
     });
 }
 
-/// Runs the repeats of one of the experiment's processes in every scene. Timed single-threaded runs stay on the idlest
-/// processor.
+/// Runs the repeats of one process in every scene, timed single-threaded runs on the idlest processor.
 /// @param process its number, from 0
 /// @param report is called with a sentence per failure
 /// @param finished is called with the index of each scene at its end
@@ -143,9 +141,8 @@ experiment open_experiment(const std::string& config, bool quick) {
     return e;
 }
 
-/// A sentence for each engine that cannot run on the scene. In a scene of meshes each engine of this program can: if it
-/// has only one stage, the default strategies run the other. In a scene of boxes it must search boxes. External
-/// engines, which are other programs, take only boxes.
+/// A sentence for each engine that cannot run on the scene. On meshes every engine can, with default strategies for the
+/// other stage; on boxes it must search boxes. External engines, other programs, take only boxes.
 std::vector<std::string> idle_engines(const experiment& e, const scene_choice& scene, const std::string& scene_name) {
     std::vector<std::string> sentences;
     for (const aabb::engine_info& engine : aabb::engines())
@@ -203,9 +200,7 @@ std::vector<std::string> run_experiment(const experiment& e, const std::filesyst
     return failures;
 }
 
-/// Runs the repeats of one of the experiment's processes, and prints its failures, which the process that started it
-/// reads.
-/// @returns true if there were none
+/// Runs one process's repeats, prints failures for the process that started it, and returns whether none occurred.
 bool run_process(const experiment& e, const std::filesystem::path& folder, std::size_t process) {
     results_folder results(folder, record_of(e), existing_results::resume);
     bool succeeded = true;

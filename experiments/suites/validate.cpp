@@ -15,8 +15,7 @@ namespace aabblab {
 
 namespace {
 
-/// The tables of the report on scenes with extreme coordinates and shapes and on hard pairs of triangles, without empty
-/// tables. A row is the result of one method in one scene or on one pair.
+/// The tables of the report on extreme scenes and hard pairs of triangles, without empty ones; a row per result.
 std::vector<named_table> tables_of(std::span<const extreme_row> rows) {
     std::vector<named_table> tables = {
         {"extreme_boxes", "Boxes, compared with a plain double loop over all boxes",
@@ -37,8 +36,7 @@ suite_report report_of(std::span<const extreme_row> rows) {
     return {memory_in(rows), {}, tables_of(rows), failures_in(rows)};
 }
 
-/// The tables of a study of stiff contacts, one per measured quantity: case, measured value, expectation, and whether
-/// it holds.
+/// The tables of a study of stiff contacts, one per quantity: case, value, expectation, and whether it holds.
 std::vector<named_table> tables_of(const stiff_study& study, const stiff_result& result) {
     std::vector<named_table> tables;
     for (const stiff_row& r : result.rows) {
@@ -84,8 +82,7 @@ figure_axis stored_axis(const json_value& j) {
     return {j.needed("label").text(), j.needed("logarithmic").flag()};
 }
 
-/// Reads a line of a figure from a report in JSON, which earlier versions stored instead of rows. A point is four
-/// numbers: x, y, and the quartiles of y.
+/// Reads a line of a figure from a report of an earlier version, as JSON. A point is x, y, and the quartiles of y.
 series stored_series(const json_value& j) {
     const json_value style = j.needed("style");
     if (style.index() > static_cast<std::size_t>(series_style::level)) style.fail("is not a style of lines");
@@ -136,9 +133,8 @@ std::string default_cases() {
     return AABBLAB_CASES;
 }
 
-/// Runs all methods on scenes with extreme coordinates and shapes and on hard pairs of triangles, compares them with
-/// the ground truth, stores a row per result, and prints the report if `shown`.
-/// @param cases the file of hard pairs of triangles
+/// Runs the extreme scenes and hard pairs of triangles (`cases`, a file), compares with the ground truth, stores a row
+/// per result, and prints the report if `shown`.
 suite_report run_extreme_suite(const std::filesystem::path& folder, const std::string& cases, bool quick, bool shown) {
     const auto size = quick ? aabb::extreme_size::quick : aabb::extreme_size::full;
     const std::vector<aabb::triangle_case> hard = read_triangle_cases(cases);
@@ -205,9 +201,8 @@ suite_report run_stiff_suite(const std::filesystem::path& folder, const std::vec
     return report;
 }
 
-/// The report on what a suite of `validate` stored in the folder: a whole report (earlier versions), the rows of the
-/// extreme suite, or results of some or all stiff studies. Empty if there is nothing, or the extreme suite was
-/// interrupted: without its last rows it might seem to pass.
+/// The report on what the folder stores: a whole report (earlier versions), rows of the extreme suite, or results of
+/// studies. Empty if there is nothing, or the extreme suite was interrupted, as it might seem to pass.
 std::optional<suite_report> stored_report(const std::filesystem::path& folder) {
     if (std::filesystem::exists(folder / "report.json")) return read_report(folder / "report.json");
     if (std::filesystem::exists(folder / "extreme.csv")) {

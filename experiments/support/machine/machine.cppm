@@ -39,8 +39,7 @@ std::optional<std::uint64_t> bytes_of(const std::string& size) {
     return *unit == 'K' ? number << 10U : *unit == 'M' ? number << 20U : *unit == 'G' ? number << 30U : number;
 }
 
-/// The bytes of each cache of a processor: "L1d" (data), "L1i" (instructions), "L2". In the processor's folder, Linux
-/// has a folder index0, index1, … for each cache, with the files level, size and type.
+/// Bytes by cache ("L1d", "L1i", "L2"), from Linux's folders index0, index1, … with files level, size and type.
 std::map<std::string, std::uint64_t> caches_in(const std::filesystem::path& folder) {
     std::map<std::string, std::uint64_t> caches;
     for (int i = 0;; ++i) {
@@ -54,8 +53,7 @@ std::map<std::string, std::uint64_t> caches_in(const std::filesystem::path& fold
     }
 }
 
-/// Reads from /proc/cpuinfo, with lines "name : value": the number and model of the processors, and whether they report
-/// a hypervisor, as in a virtual machine.
+/// Reads from /proc/cpuinfo the number and model of processors, and whether they report a hypervisor.
 void read_cpuinfo(const std::filesystem::path& file, machine& m) {
     std::ifstream in(file);
     for (std::string line; std::getline(in, line);) {

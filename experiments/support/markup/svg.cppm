@@ -37,8 +37,8 @@ public:
     void disc(place middle, double radius) {
         add("circle", {{"cx", along(middle.x)}, {"cy", middle.y}, {"r", radius}});
     }
-    /// Adds polylines as one path, in pixels whatever the picture's unit is. A single point becomes a line of length 0
-    /// ("h0"), of which only the round caps are drawn.
+    /// Adds polylines as one path, in pixels. A single point is a line of length 0 ("h0"): only its round caps are
+    /// drawn.
     /// @param closed whether each polyline returns to its first point
     void path(std::string_view kind, const polylines& lines, bool closed = false, const attributes& look = {}) {
         std::string d;

@@ -94,8 +94,7 @@ std::size_t paragraph_width() {
     return std::min<std::size_t>(output_width(), 80);
 }
 
-/// Breaks text into lines of at most `most` characters at blanks: a word begins a new line if the current one has no
-/// space for it. Every blank is kept, unless a line is broken there.
+/// Breaks text at blanks into lines of at most `most` characters; other blanks are kept.
 std::string wrapped(std::string_view text, std::size_t most) {
     std::string lines;
     std::size_t width = 0;
@@ -116,8 +115,7 @@ void print_paragraph(std::string_view text) {
     print(wrapped(text) + "\n");
 }
 
-/// A hanging indent: the prefix `before`, then the text, broken into lines of at most `most` characters in all. Further
-/// lines are indented by the width of the prefix.
+/// A hanging indent: `before`, then the text, broken into lines of at most `most` characters and indented by it.
 std::string hanging(std::string_view before, std::string_view text, std::size_t most) {
     const std::size_t indent = characters(before);
     std::string result(before);

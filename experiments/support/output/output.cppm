@@ -38,7 +38,7 @@ void print_paragraph(std::string_view text);
 /// An entry of a list: a name, then its description in a second column, or on the next line if the name is too long.
 [[nodiscard]] std::string entry(std::string_view name, std::string_view text);
 
-/// For commands that do more than print: if the reader closes standard output, the work continues without output.
+/// Continues the work of commands that do more than print, without output, if the reader closes standard output.
 void outlive_reader();
 
 /// Prints a note for the user on standard error: escaped, in one line, or wrapped if it is a terminal.

@@ -53,8 +53,7 @@ void request_signal_at_end_of(pid_t parent, int signal) {
     if (getppid() != parent) _exit(127);  // the parent has already ended
 }
 
-/// Becomes the program, with its streams and folder as in the options; returns only if that fails, with errno. Signals
-/// that this program handles itself get their default handling back.
+/// Becomes the program, with streams, folder and default signal handling; returns only if that fails, with errno.
 /// @param output the descriptor that receives what the program prints
 void exec_program(char* const* arguments, const process_options& options, int output) {
     if (dup2(output, STDOUT_FILENO) < 0 || !redirect(options.input.c_str(), O_RDONLY, STDIN_FILENO) ||
@@ -66,9 +65,8 @@ void exec_program(char* const* arguments, const process_options& options, int ou
     execvp(*arguments, arguments);
 }
 
-/// Kills all descendants: kills all children, whose own children then become children of this process, as it is their
-/// subreaper, and repeats that until none is left. The kernel lists the children as numbers, each with a blank after
-/// it.
+/// Kills all children until none is left: their own children become children of this process, as it is their subreaper.
+/// The kernel lists children as numbers, each with a blank after it.
 void kill_descendants() {
     std::array<char, 4096> list{};
     for (;;) {
@@ -156,8 +154,7 @@ constexpr const char* guard_script = "trap '' HUP INT TERM; read -r end; rm -rf 
 
 using clock = std::chrono::steady_clock;
 
-/// Waits until input, or the end of input, arrives; false if the time `end` comes first. Without a time it returns true
-/// at once: the next read then waits.
+/// Waits until input or its end arrives; false if `end` comes first. Without `end`, true: the read then waits.
 bool becomes_readable(int input, const std::optional<clock::time_point>& end) {
     pollfd request{input, POLLIN, /*revents=*/0};
     while (end) {

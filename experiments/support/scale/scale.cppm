@@ -34,7 +34,7 @@ export enum class scale_end : unsigned char {
     return static_cast<int>(std::floor(std::log10(value) + 1e-9));
 }
 
-/// The smallest step of 1, 2 or 5 times a power of ten of which at most `most` fit into the span.
+/// The smallest step of 1, 2 or 5 times a power of ten for which at most `most` fit into the span.
 export [[nodiscard]] double round_step(double span, double most) {
     const double least = span / most;
     const double power = std::pow(10, exponent_of(least));

@@ -17,9 +17,8 @@ double wall_ms() {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// The step of a clock, in milliseconds: the time between two different readings. It is the minimum of up to ten,
-/// because an interrupt may hide steps. A step of at most `longest_step_ms`, which is fine enough, ends the
-/// measurement.
+/// The step of a clock in milliseconds, the minimum of up to ten between different readings, because interrupts may
+/// hide steps; one of `longest_step_ms`, fine enough, ends the measurement.
 double step_of(double (*clock)()) {
     double step = std::numeric_limits<double>::infinity();
     for (int i = 0; i < 10 && step > longest_step_ms; ++i) {
