@@ -32,7 +32,7 @@ enum class calibration_size : unsigned char { quick, full };
 /// The accuracy of the costs of one group on held-out scenes.
 struct group_check {
     std::string_view group;
-    accuracy found;
+    accuracy held_out;
 };
 
 struct calibration {
@@ -41,7 +41,7 @@ struct calibration {
     std::vector<group_check> checks;
 };
 
-/// @param seconds the approximate time of the timed rounds, of which at least three run
+/// @param seconds the approximate time of the timed rounds; at least three run
 [[nodiscard]] calibration calibrate(calibration_size size, double seconds);
 
 }  // namespace aabblab

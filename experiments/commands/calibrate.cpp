@@ -34,8 +34,8 @@ table table_of(const calibration& fit) {
 table checks_of(const calibration& fit) {
     table t = empty_table({"predictions for held-out scenes"}, {"count", "median error factor", "worst"});
     for (const group_check& check : fit.checks)
-        t.rows.push_back({std::string(check.group), std::to_string(check.found.observations),
-                          fmt::format("{:.2f}", check.found.median), fmt::format("{:.2f}", check.found.worst)});
+        t.rows.push_back({std::string(check.group), std::to_string(check.held_out.observations),
+                          fmt::format("{:.2f}", check.held_out.median), fmt::format("{:.2f}", check.held_out.worst)});
     return t;
 }
 

@@ -120,7 +120,7 @@ TEST_CASE("calibrate measures every cost and checks it on held-out scenes") {
         CHECK(std::isfinite(measured.costs.*cost.value));
     }
     CHECK(measured.checks.size() == 6);
-    for (const aabblab::group_check& check : measured.checks) CHECK(check.found.observations > 0);
+    for (const aabblab::group_check& check : measured.checks) CHECK(check.held_out.observations > 0);
     CHECK(aabb::machine_costs() == aabb::cost_model{});
 }
 
