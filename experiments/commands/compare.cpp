@@ -22,7 +22,7 @@ void add_compare(const command_parser& program) {
     command.argument("A", &request.a, "Results folder of one experiment or several");
     command.argument("B", &request.b, "Results folder to compare with A; B/A is its value over A's");
     command.flag("--times", &request.times, "Also compare milliseconds, if both folders come from one machine");
-    command.flag("--all", &request.all, "Also list what is unchanged or undecided");
+    command.flag("--all", &request.list_all, "Also list what is unchanged or undecided");
 }
 
 }  // namespace aabblab

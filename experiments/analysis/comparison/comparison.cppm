@@ -70,9 +70,9 @@ enum class compared { ratios, ratios_and_times };
 [[nodiscard]] comparison compare(const run_results& a, const run_results& b, compared quantities);
 
 struct compare_request {
-    std::string a, b;    ///< folders
-    bool times = false;  ///< milliseconds too
-    bool all = false;    ///< lists unchanged and undecided ones, too
+    std::string a, b;       ///< folders
+    bool times = false;     ///< milliseconds too
+    bool list_all = false;  ///< lists unchanged and undecided ones, too
 };
 
 /// Prints the changes.

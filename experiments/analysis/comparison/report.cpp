@@ -170,8 +170,8 @@ int print_comparison(const compare_request& request) {
     const comparison report = compare(a, b, request.times ? compared::ratios_and_times : compared::ratios);
     print(fmt::format("A: {} ({})\nB: {} ({})\n", visible(request.a), makers_of(a), visible(request.b), makers_of(b)));
     print_different_results(report);
-    print_compared(report, &compared_scene::ratios, request.all);
-    if (request.times) print_compared(report, &compared_scene::times, request.all);
+    print_compared(report, &compared_scene::ratios, request.list_all);
+    if (request.times) print_compared(report, &compared_scene::times, request.list_all);
     print_numbers(report);
     if (report.only_in_a + report.only_in_b > 0)
         print(fmt::format("not compared, because the other run lacks them: {} compositions in a scene of A, {} of B\n",
