@@ -112,7 +112,7 @@ class common_part {
 public:
     void add_corner(corner p) { crossings_[size_++] = {p, p, {}, 0}; }
     void add_crossing(const crossing& c) { crossings_[size_++] = c; }
-    /// Adds the point where the edge from a to b crosses a plane, on different sides of which a and b lie.
+    /// Adds the point where the edge from a to b crosses a plane; a and b lie on different sides of it.
     void add_cut(corner a, corner b, int side_of_a, int side_of_b, const corner_triple& plane) {
         if (side_of_a == 0) return add_corner(a);
         if (side_of_b == 0) return add_corner(b);
@@ -195,7 +195,7 @@ struct hull {
     std::array<corner, 3> corners;
     std::size_t size;
 
-    [[nodiscard]] std::span<const corner> all() const { return std::span(corners).first(size); }
+    [[nodiscard]] std::span<const corner> distinct_corners() const { return std::span(corners).first(size); }
     [[nodiscard]] std::size_t edges() const { return size == 3 ? 3 : size - 1; }
     [[nodiscard]] corner from(std::size_t edge) const { return corners[edge]; }
     [[nodiscard]] corner to(std::size_t edge) const { return corners[(edge + 1) % size]; }
@@ -268,7 +268,7 @@ private:
         return true;
     }
     [[nodiscard]] bool is_corner_of(const hull& h, corner p) {
-        return std::ranges::any_of(h.all(), [&](corner q) { return are_equal(p, q); });
+        return std::ranges::any_of(h.distinct_corners(), [&](corner q) { return are_equal(p, q); });
     }
     /// The mask of the hull's edges whose lines contain p.
     [[nodiscard]] unsigned edges_through(const hull& h, corner p, int axis) {
@@ -288,9 +288,9 @@ private:
             lines[common.size()] = edges_through(g, p, axis) | edges_through(h, p, axis) << 3;
             common.add_corner(p);
         };
-        for (const corner p : g.all())
+        for (const corner p : g.distinct_corners())
             if (contains(h, p, axis)) add(p);
-        for (const corner p : h.all())
+        for (const corner p : h.distinct_corners())
             if (!is_corner_of(g, p) && contains(g, p, axis)) add(p);
         for (std::size_t i = 0; i < g.edges(); ++i)
             for (std::size_t j = 0; j < h.edges(); ++j) {
@@ -325,15 +325,15 @@ private:
             // Two crossing segments span a plane; otherwise everything is on one line.
             const bool is_flat = larger.size == 3
                                      ? corners_.turn(larger.corners[0], larger.corners[1], larger.corners[2], axis) == 0
-                                     : std::ranges::all_of(other.all(), [&](corner p) {
+                                     : std::ranges::all_of(other.distinct_corners(), [&](corner p) {
                                            return corners_.turn(larger.corners[0], larger.corners[1], p, axis) == 0;
                                        });
             if (!is_flat) return flat(g, h, axis);
         }
         common_part common;
-        for (const corner p : g.all())
+        for (const corner p : g.distinct_corners())
             if (is_between(p, h.corners[0], h.corners[1])) common.add_corner(p);
-        for (const corner p : h.all())
+        for (const corner p : h.distinct_corners())
             if (!is_corner_of(g, p) && is_between(p, g.corners[0], g.corners[1])) common.add_corner(p);
         return common.by_size();
     }

@@ -202,9 +202,9 @@ class integer_engine final : public model_engine<given_model> {
 }  // namespace
 
 bool intersect_in_integers(const pose_pair& poses, const triangle3d& s, const triangle3d& t) {
-    bool found = false;
-    for_each_pair(poses, std::span(&s, 1), std::span(&t, 1), [&](index_pair) { return found = true; });
-    return found;
+    bool do_intersect = false;
+    for_each_pair(poses, std::span(&s, 1), std::span(&t, 1), [&](index_pair) { return do_intersect = true; });
+    return do_intersect;
 }
 
 engine boost_integers_engine() {
