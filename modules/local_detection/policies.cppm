@@ -113,8 +113,6 @@ enum class walk_goal : std::uint8_t { every_pair, first_pair };
 struct tree_bytes {
     std::size_t nodes;    ///< boxes, planes and symbols
     std::size_t indices;  ///< indices of children and triangles
-
-    [[nodiscard]] constexpr std::size_t all() const noexcept { return nodes + indices; }
 };
 
 /// A layout that packs an order of triangles instead of nodes.
