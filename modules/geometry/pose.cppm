@@ -329,7 +329,7 @@ private:
         for (int j = 0; j < 3; ++j) {
             lanes entry{};
             entry[j] = 1;
-            lanes magnitude = entry;  // of the terms of an entry, of which each is rounded at most four times
+            lanes magnitude = entry;  // of the terms of an entry; each is rounded at most four times
             for (int k = 0; k < 3; ++k) {
                 const lanes term = inverse_a_[k] * a.rotation[static_cast<std::size_t>(3 * k + j)];
                 entry -= term;

@@ -70,7 +70,7 @@ private:
 /// bounds of determinants are those of `determinant_errors`.
 class posed_orientations {
 public:
-    /// @param s,t vertices of a mesh at `poses.a` and of one at `poses.b`, all of which outlive this object
+    /// @param s,t vertices of a mesh at `poses.a` and of one at `poses.b`; all outlive this object
     posed_orientations(const pose_pair& poses, const triangle3d& s, const triangle3d& t) noexcept
         : given_{{{&s[0], &poses.a},
                   {&s[1], &poses.a},
@@ -125,7 +125,7 @@ public:
         return apart;
     }
 
-    /// Whether two corners of one triangle are the same point: a map of full rank keeps vertices apart.
+    /// Whether two corners of one triangle are the same point: a map of full rank keeps vertices distinct.
     [[nodiscard]] bool are_equal(const vec3d& p, const vec3d& q) const noexcept {
         const auto vertex = [&](const vec3d& corner) -> const vec3d& {
             return *given_[static_cast<std::size_t>(index_of(corner))].vertex;
@@ -136,7 +136,7 @@ public:
     /// Whether they are disjoint, exactly.
     [[nodiscard]] bool boxes_are_disjoint() noexcept { return exact().boxes_are_disjoint(); }
 
-    /// As `orientations::part`.
+    /// The same as `orientations::part`.
     [[nodiscard]] bool part(corner_sides& s_to_t, corner_sides& t_to_s) noexcept {
         const std::array<int, 3> of_s = filtered_sides(t_, s_), of_t = filtered_sides(s_, t_);
         s_to_t = corner_sides(of_s);
@@ -153,7 +153,7 @@ public:
         return sign != 0 ? sign : exact().side(index_of(a), index_of(b), index_of(c), index_of(d));
     }
 
-    /// As `orientations::in_order`.
+    /// The same as `orientations::in_order`.
     [[nodiscard]] bool in_order(const vec3d& s0, const vec3d& s1, const vec3d& s2, const vec3d& t0, const vec3d& t1,
                                 const vec3d& t2) noexcept {
         return side(s0, s1, t0, t1) <= 0 && side(s0, s2, t0, t2) >= 0;
@@ -178,7 +178,7 @@ public:
         return *exact_;
     }
 
-    /// As `orientations::beyond`.
+    /// The same as `orientations::beyond`.
     [[nodiscard]] bool beyond(const vec3d& a, const vec3d& b, int own, const triangle3d& t, int axis) noexcept {
         const int first = turn(a, b, t[0], axis);
         return first != 0 && first != own && turn(a, b, t[1], axis) == first && turn(a, b, t[2], axis) == first;

@@ -141,7 +141,7 @@ using vec3i = vec3<std::int64_t>;
 /// difference, which is below 2^61, less than two.
 class grid {
 public:
-    /// @param points all points to be quantized, of which the largest coordinate on an axis sets the step
+    /// @param points all points to be quantized; their largest coordinate on an axis sets the step
     explicit grid(std::initializer_list<const vec3d*> points) noexcept {
         for (int k = 0; k < 3; ++k) {
             double largest = 0;

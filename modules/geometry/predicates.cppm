@@ -62,8 +62,8 @@ struct scaled_double {
 /// u E E each, as the two rounded products do. The last subtraction keeps the sign: 6 u E E in all.
 ///
 /// A side is n · r for n = p × q and a third difference r. A difference is multiplied by twice the area of a projected
-/// triangle of points, at most E E: nine differences change the side by u E E E each. So does each product and
-/// difference in n, of which there are nine, and each product with r. With a wrong sign the side itself is within the
+/// triangle of points, at most E E: nine differences change the side by u E E E each. So does each of the
+/// nine products and differences in n, and each product with r. With a wrong sign the side itself is within the
 /// error, so that the first two products add up to the third, negated: their sum rounds by u E E E, and the last sum
 /// keeps the sign: 22 u E E E in all. Half a u more covers terms of second order and the rounding of E and the bounds.
 ///
@@ -176,7 +176,7 @@ public:
     }
 
     /// Whether, projected along an axis, the line ab has all corners of `t` strictly on one side, and on the other
-    /// side, or on the line itself, the triangle of which ab is an edge. `own` is the orientation of that triangle.
+    /// side, or on the line itself, the triangle with the edge ab. `own` is the orientation of that triangle.
     [[nodiscard]] inline bool beyond(const vec3d& a, const vec3d& b, int own, const triangle3d& t, int axis) noexcept {
         const int x = (axis + 1) % 3, y = (axis + 2) % 3;
         const lanes<double> computed =

@@ -68,8 +68,8 @@ struct wide_integer {
         return difference;
     }
 
-    /// The whole product: that of the limbs as unsigned numbers, of which a negative factor -x, stored as 2^64n - x,
-    /// takes back the other factor in the upper limbs.
+    /// The whole product: that of the limbs as unsigned numbers, less, for a negative factor -x, stored as 2^64n - x,
+    /// the other factor in the upper limbs.
     template <std::size_t Others>
     friend constexpr wide_integer<Limbs + Others> operator*(const wide_integer& p,
                                                             const wide_integer<Others>& q) noexcept {

@@ -92,8 +92,8 @@ public:
     }
     [[nodiscard]] std::size_t fullest() const noexcept { return fullest_; }
 
-    /// The region of a group, a cell of the grid, within the bounds of all groups. Groups at the edge of the grid reach
-    /// to the bounds, since coordinates beyond the grid are clamped. Boxes may extend beyond it into other groups.
+    /// The region of a group, a cell of the grid, within the bounds of all groups. Groups at its edge extend to
+    /// the bounds, since coordinates beyond the grid are clamped. Boxes may extend beyond it into other groups.
     [[nodiscard]] box region(std::uint32_t g, const box& within) const noexcept {
         box b = within;
         const std::uint32_t cell[2] = {g % plan_.across[0], g / plan_.across[0]};

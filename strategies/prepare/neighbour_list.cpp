@@ -200,7 +200,7 @@ private:
         ++age_;
         // While watching no result depends on the motion, so it is measured at power-of-two ages only.
         if (state_ == state::watching && !std::has_single_bit(age_)) return observation::complete;
-        const bool has_fixed_age = config_.every > 0;  // a new list every so many frames, whatever moves
+        const bool has_fixed_age = config_.every > 0;  // a new list at this age, whatever moves
         const relative_motion before = moved_;
         if (!has_fixed_age || !config_.margin) {
             moved_ = motion_between(kept_, boxes, objects_);

@@ -100,7 +100,7 @@ struct plane_motion {
 [[nodiscard]] inline relative_motion motion_of(const plane_motion& motion) noexcept {
     relative_motion moved{};
     for (int k = 0; k < 3; ++k) {
-        // Boxes reach beyond the earlier ones by lower planes that move down and by upper planes that move up.
+        // Boxes extend beyond the earlier ones by lower planes that move down and by upper planes that move up.
         moved.margin = std::max(moved.margin, margin_between(motion.lower.least[k], motion.upper.most[k]));
         moved.in_both_directions =
             std::max(moved.in_both_directions, margin_between(std::min(motion.lower.least[k], motion.upper.least[k]),

@@ -11,7 +11,7 @@ export namespace aabb {
 /// three axes, kept between frames as in `incremental`. After Tracy, Buss and Woods, "Efficient large-scale sweep and
 /// prune methods with AABB insertion and removal" (IEEE Virtual Reality 2009), from its abstract: it also subdivides
 /// space, and cuts lists into segments so that an insertion does not pass all other objects. Here regions are so small
-/// that each list is one such segment. When to use: many objects, few of which move at a time.
+/// that each list is one such segment. When to use: many objects, if few move at a time.
 ///
 /// Only regions with moved objects are processed. An object that enters a region is appended to the region's lists and
 /// sorted to its place, which finds its pairs; when it leaves one, its pairs there are tested. Once a frame has taken
@@ -25,7 +25,7 @@ public:
     static constexpr std::string_view summary = "incremental sweep and prune within each region of a coarse grid";
 
     struct config {
-        /// Number along each of the two cut axes. auto: as many as leave 16 objects per region of four mean extents.
+        /// Number along each of the two cut axes. auto: about 16 objects per region, at least four mean extents wide.
         std::optional<std::uint32_t> regions;
     };
     static constexpr std::tuple parameters{integer_parameter{

@@ -95,7 +95,7 @@ private:
             return crossing;
     }
 
-    /// Tests triangles of which neither lies strictly on one side of the other's plane.
+    /// Tests two triangles; neither lies strictly on one side of the other's plane.
     [[nodiscard]] static inline bool crossing_intersects(const triangle3d& s, const sides& s_to_t, const triangle3d& t,
                                                          const sides& t_to_s, Signs& signs) noexcept {
         // All sides are zero if the triangles are coplanar, or if the other one has zero area and thus no plane. A

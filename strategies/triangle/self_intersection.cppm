@@ -133,7 +133,7 @@ private:
                (extends(s[1], s[0], s[2]) && extends(s[1], s[0], t[2]));
     }
 
-    /// Whether a triangle reaches into another with which it shares a single corner, by the edge opposite that corner:
+    /// Whether a triangle meets another, with which it shares a single corner, by the edge opposite that corner:
     /// the line through the corner and any other common point leaves one of the two triangles first, at that edge.
     /// Without area, such an edge may contain the shared corner itself, and only its ends count.
     [[nodiscard]] static bool reaches(const triangle3d& s, const corner_sets::list& own, const triangle3d& t) noexcept {

@@ -54,7 +54,7 @@ public:
     }
 
 private:
-    static constexpr double least = 0x1p-160;  // for denormal coordinates, of which a map may make greater ones
+    static constexpr double least = 0x1p-160;  // for denormal coordinates, which a map may make greater
 
     [[nodiscard]] static inline simd::eight_doubles doubles_of(const quantized_aabbs::row& codes) noexcept {
         return __builtin_convertvector(simd::load_eight<simd::eight_bytes>(codes.data()), simd::eight_doubles);

@@ -115,8 +115,8 @@ private:
     std::array<simd::sixteen_floats, 3> offset_{};
 };
 
-/// The boxes of a leaf's triangles in 16 bits per plane. There are no false negatives; false positives are less than
-/// some two steps apart, or arise where 16 bits are too coarse (`are_coarse`).
+/// The boxes of a leaf's triangles in 16 bits per plane. There are no false negatives; false positives have distances
+/// below some two steps, or arise where 16 bits are too coarse (`are_coarse`).
 class leaf_boxes {
 public:
     /// Stores the boxes as 16-bit integers on the grid, so that a comparison takes half as many vectors as in float.
