@@ -29,10 +29,10 @@ void add_leaf_test_benchmarks();
 /// Runs every triangle test on leaves whose boxes overlap.
 void add_triangle_test_benchmarks();
 
-/// The stages that decide pairs of triangles at poses, each alone, on meshes that cross, lie 1e-9 apart or are flush
-/// under one rotation, and on gears in mesh: filter in double on images, exact test, and six corners as integers with
-/// the sides of three. The counter `decided` is the fraction that the stage decides, of `pairs` with overlapping boxes.
-/// "posed/exact/flush"
+/// The stages that decide pairs of triangles at poses, each alone, on meshes that cross, nearly touch (1e-9) or are
+/// flush under one rotation, and on gears in mesh: filter in double on images, exact test, and six corners as integers
+/// with the sides of three. The counter `decided` is the fraction that the stage decides, of `pairs` with overlapping
+/// boxes. "posed/exact/flush"
 void add_posed_triangle_benchmarks();
 
 /// Every build of `implicit` by one thread, with the counters `two_threads`, the speedup by two threads, and

@@ -58,7 +58,7 @@ std::vector<std::string> option_names(const CLI::App& command) {
     return names;
 }
 
-/// The form "--partition axial_cut:axes=…", for users who write a strategy's parameter as an option of its own.
+/// The form "--partition axial_cut:axes=…", for a strategy's parameter that is written as an option of its own.
 /// @param options those of the command, in which each kind of strategy has one
 /// @returns empty if no strategy that the command accepts has a parameter of this name
 std::string option_of_parameter(const std::string& parameter, const std::vector<std::string>& options) {

@@ -96,7 +96,7 @@ struct frames_result {
 /// The pairs of triangles that a query of one mesh with itself reports.
 enum class self_pairs {
     intersecting,  ///< those with more in common than shared corners and the edge between two
-    all,           ///< all that share a point, with those that share a vertex counted separately
+    all,           ///< those that share a point; those that share a vertex are counted separately
     no_adjacent    ///< those that share a point but no vertex
 };
 

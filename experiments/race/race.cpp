@@ -46,7 +46,7 @@ observation median_of(std::vector<observation> times) {
 }
 
 /// A race in three steps. In the first round all candidates run a few frames. Rounds of twice as many frames follow,
-/// after each of which slow candidates are dropped. In the final, the remaining ones run in interleaved repeats.
+/// and each drops slow candidates. In the final, the remaining ones run in interleaved repeats.
 class race {
 public:
     race(staged_scene& scene, std::vector<racer> candidates, const time_limits& limits)

@@ -86,7 +86,7 @@ struct row {
 struct difference {
     scene_choice scene;
     candidate_name name;
-    std::string what;  ///< "missing" or "invented"
+    std::string what;  ///< a false negative or a false positive, as named in the file
     std::string kind;  ///< a class of aabb::difference_class_names, or "boxes" for pairs of boxes
     std::uint64_t count = 0;
 };

@@ -14,7 +14,7 @@ enum class contact_geometry : std::uint8_t {
     /// Likewise for each such vertex of the second body; springs begin `rest` above the plane and share the load.
     each_vertex,
     /// A pressure on the surface of the second body inside the first. By Stokes' theorem the integral of its normal is
-    /// ½ ∮ r × dr along the intersection curve, of which every pair of triangles contributes a segment: the force is
+    /// ½ ∮ r × dr along the intersection curve, to which every pair of triangles contributes a segment: the force is
     /// the negative gradient of stiffness times the shared volume.
     shared_volume
 };

@@ -131,7 +131,7 @@ private:
     }
 
     /// Appends rows of differences.csv, one for each number that is not 0.
-    /// @param what "missing" (false negatives) or "invented" (false positives)
+    /// @param what the column's word for false negatives or false positives
     /// @param boxes the number of differing pairs of boxes
     /// @param classes the numbers of differing pairs of triangles, by geometric class (coplanar, touching, …)
     void add_differences(std::vector<difference>& differences, std::string_view what, std::uint64_t boxes,

@@ -1,4 +1,4 @@
-/// Reference systems as replacements for our stages, behind plain types: no library header reaches an importer.
+/// Reference systems as replacements for our stages, behind plain types: importers see no library header.
 export module aabb.engines;
 
 export import aabb.exact_intersection;

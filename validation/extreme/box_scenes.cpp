@@ -132,7 +132,7 @@ box_frames denormals() {
     return with_ends(ends, 80, 21);
 }
 
-/// Boxes of about ten in size; floats are a sixteenth apart at a million, 64 apart at 10^9.
+/// Boxes of about ten in size; the spacing of floats is a sixteenth at a million, 64 at 10^9.
 box_frames far_out(float offset) {
     draws random(24);
     return independent_frames(80, [&](std::uint32_t) {
@@ -143,7 +143,7 @@ box_frames far_out(float offset) {
 
 constexpr std::uint32_t population_size = 72;
 
-/// Six frames, in each of which all boxes have random new positions and sizes.
+/// Six frames; in each, all boxes have random new positions and sizes.
 box_frames jumping_boxes() {
     draws random(31);
     box_frames frames(6);

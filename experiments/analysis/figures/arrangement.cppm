@@ -305,7 +305,7 @@ private:
     std::vector<end_label> place_ends() {
         constexpr std::size_t most_lines = 3;
         constexpr double furthest = 2.2;      // from its line: further away, a label seems to belong to another
-        constexpr double most_overlap = 0.1;  // not seen; the relaxation may not reach 0
+        constexpr double most_overlap = 0.1;  // not seen; the relaxation may not end at 0
         std::vector<end_label> ends = wanted_ends();
         double widest = 0;
         for (end_label& end : ends) {
@@ -321,7 +321,7 @@ private:
             const end_label& b = ends[upper];
             return (height_of(a.lines) + height_of(b.lines)) / 2 - (b.middle - a.middle);
         };
-        // Relaxation: labels that overlap move apart by half of the overlap each, until none do.
+        // Relaxation: of two labels that overlap, one moves up and one down by half of it, until none do.
         constexpr int rounds = 200;
         for (int round = 0; round < rounds; ++round)
             for (std::size_t i = 1; i < ends.size(); ++i) {

@@ -27,7 +27,7 @@ struct series {
 };
 
 struct figure_axis {
-    std::string label;  ///< with the unit: "time a frame (ms)"
+    std::string label;  ///< with the unit: "time per frame (ms)"
     bool logarithmic = false;
     /// The names that replace numbers, each with its position, from left to right; empty for numbers.
     std::vector<std::pair<double, std::string>> names{};

@@ -8,7 +8,7 @@ import :boxes;
 namespace aabblab {
 
 /// Unit cubes that fill a cube of their total volume, overlap about eight others each, and creep outwards; after a
-/// third of the frames they fly apart, and in the last third they rest. Each third favours other strategies.
+/// third of the frames they fly, and in the last third they rest. Each third favours other strategies.
 class explosion final : public generated_boxes {
 public:
     static constexpr std::string_view name = "explosion";

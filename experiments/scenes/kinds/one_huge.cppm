@@ -7,7 +7,7 @@ import :boxes;
 
 namespace aabblab {
 
-/// Unit cubes and one or more huge cubes, each of which overlaps all cubes within it, by default an eighth of all.
+/// Unit cubes and huge cubes; a huge one overlaps all cubes within it, by default an eighth of them.
 class one_huge final : public generated_boxes {
 public:
     static constexpr std::string_view name = "one_huge";

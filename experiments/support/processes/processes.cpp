@@ -129,7 +129,7 @@ int wait_for_program(pid_t program, const sigset_t& awaited) {
     if (program < 0) return false;
     if (program == 0) {
         request_signal_at_end_of(keeper, SIGKILL);
-        setpgid(0, 0);  // so that signals to its group do not reach the keeper
+        setpgid(0, 0);  // so that the keeper does not get signals to its group
         sigprocmask(SIG_SETMASK, &before, nullptr);
         return true;
     }
