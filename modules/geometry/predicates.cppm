@@ -62,10 +62,10 @@ struct scaled_double {
 /// u E E each, as the two rounded products do. The last subtraction keeps the sign: 6 u E E in all.
 ///
 /// A side is n · r for n = p × q and a third difference r. A difference is multiplied by twice the area of a projected
-/// triangle of points, at most E E: nine differences change the side by u E E E each. So does each of the
-/// nine products and differences in n, and each product with r. With a wrong sign the side itself is within the
-/// error, so that the first two products add up to the third, negated: their sum rounds by u E E E, and the last sum
-/// keeps the sign: 22 u E E E in all. Half a u more covers terms of second order and the rounding of E and the bounds.
+/// triangle of points, at most E E: nine differences change the side by u E E E each. So does each of the nine products
+/// and differences in n, and each product with r. With a wrong sign the side itself is within the error, so that the
+/// first two products add up to the third, negated: their sum rounds by u E E E, and the last sum keeps the sign: 22 u
+/// E E E in all. Half a u more covers terms of second order and the rounding of E and the bounds.
 ///
 /// If coordinates are off by at most b, E is the extent plus 2 b. Both determinants are linear in the coordinates on
 /// one axis. A side changes by at most b times the sum, over four points, of twice the projected area of the triangle

@@ -70,8 +70,8 @@ private:
 
     [[nodiscard]] inline std::size_t next(std::size_t slot) const noexcept { return (slot + 1) & (table_.size() - 1); }
 
-    /// Empties a slot of `table_`. A search ends at the first empty slot, so an entry behind whose search, from its
-    /// home slot, would cross this gap moves into it and leaves the next gap. Deleted slots need no marks.
+    /// Empties a slot of `table_`. A search ends at the first empty slot, so a later entry moves into this gap if its
+    /// search, from its home slot, would cross it, and leaves the next gap. Deleted slots need no marks.
     inline void close_gap(std::size_t gap) {
         for (std::size_t at = next(gap); table_[at] != none; at = next(at)) {
             const std::size_t home = home_of(pairs_[table_[at]]);

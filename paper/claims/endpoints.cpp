@@ -91,8 +91,7 @@ std::vector<series> series_of(std::span<const method> methods, std::span<const c
     return lines;
 }
 
-/// Lines of a figure: the ratios against the number of huge boxes, one line per edge length, and the baseline's level
-/// 1.
+/// Lines of a figure: ratios against the number of huge boxes, one per edge length, and the baseline's level, 1.
 /// @param wanted factors that a ratio must have to be drawn
 std::vector<series> lines_by_span(std::span<const endpoint> ratios, const factors& wanted, const std::string& level) {
     std::map<std::string, series> by_span;

@@ -23,8 +23,7 @@ struct part {
 
 class balanced_order_builder {
 public:
-    /// Allocates the result and the scratch memory: two arrays of items, since a split moves its items to the other
-    /// one.
+    /// Allocates the result and the scratch memory: two arrays of items, since each split moves them to the other.
     balanced_order_builder(const mesh& m, axis_rule rule) : mesh_(m), rule_(rule) {
         const std::size_t n = m.triangles.size();
         both_arrays_.resize(2 * n);
@@ -139,9 +138,8 @@ private:
         return best;
     }
 
-    /// Moves at most 64 items to `to`, the `left_count` of the left side first, each side in its order. The split's
-    /// mask compares centres rounded to 16 bits; if ties put too many items into it, the last by exact centres are
-    /// removed.
+    /// Moves at most 64 items to `to`, the `left_count` of the left side first, each side in its order. The mask
+    /// compares centres rounded to 16 bits; if ties put too many items into it, the last by exact centres are removed.
     void split_few(std::span<const boxed_triangle> from, std::span<boxed_triangle> to, const box& bounds,
                    std::size_t left_count) const noexcept {
         auto [axis, left_mask] = best_split(few_items(from), bounds, left_count);

@@ -39,10 +39,9 @@ struct cut_plan {
     }
 };
 
-/// Puts boxes into groups, which are then cut into columns, if the plan has any: into the grid of an earlier frame or,
-/// if there is none or its fullest group has more than doubled, into a new one. Groups are nested: each level must
-/// separate at least an eighth of all pairs of boxes, so that all levels take at most eight times the work of brute
-/// force.
+/// Puts boxes into groups, to be cut into columns, if the plan has any: into the grid of an earlier frame or, if there
+/// is none or its fullest group has more than doubled, into a new one. Groups are nested: each level must separate at
+/// least an eighth of all pairs of boxes, so that all levels take at most eight times the work of brute force.
 /// @param kept the plan of an earlier frame, and then that of this one
 /// @param make_plan returns a new plan
 /// @returns `not_worthwhile` if there are no groups

@@ -244,8 +244,8 @@ private:
 
     /// The cheapest number of segments per axis, if not configured, for n uniformly spread boxes of the mean size. S
     /// segments make 1 + S · extent / width copies of a box, at most 2 with the limit; in a subset, a box is tested
-    /// against those that overlap it on the swept axis. Never more subsets than boxes, so that no cost model gets a
-    /// frame rejected.
+    /// against those that overlap it on the swept axis. There are never more subsets than boxes, so that no cost model
+    /// gets a frame rejected.
     [[nodiscard]] candidate_cut cheapest_cut(const spread& along, axis_set cut, axis_set swept) const {
         const auto objects = static_cast<double>(along.objects);
         const vec3d share = shares_of(along);

@@ -26,8 +26,7 @@ public:
     }
 
     /// Reports the pairs that overlap on all one to three lists. Of ranks i < j, indices in the first list, those with
-    /// j < end_[i] overlap there. With three, a bitmap marks overlaps on the first two, for one block of rows at a
-    /// time.
+    /// j < end_[i] overlap there. With three lists, a bitmap marks overlaps on the first two, by blocks of rows.
     template <class Subset, CounterPolicy Counters>
     void sweep(const Subset& subset, std::vector<index_pair>& pairs, Counters& counters) {
         std::array<std::span<const typename Subset::entry>, 3> lists;

@@ -64,8 +64,8 @@ struct nearest_places {
 template <WideTreePolicy Tree>
 class nearest_walk {
 public:
-    /// Visits first the pairs of leaves that most likely intersect: descends to the nearest pair of children, postpones
-    /// the others, by step, and goes some steps back after leaves that do not intersect.
+    /// Visits pairs of leaves whose boxes may overlap, the likeliest hits first: descends to the nearest pair of
+    /// children, postpones the others, by step, and goes some steps back after leaves that do not intersect.
     /// @param at_leaves called with a leaf of A and one of B; returns whether to stop
     template <class Counters, class AtLeaves>
     void for_each_leaf_pair(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a, Counters& counters,

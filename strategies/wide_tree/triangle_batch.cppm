@@ -14,8 +14,8 @@ public:
     void clear() noexcept { pairs_ = leaf_pairs_ = 0; }
     [[nodiscard]] bool is_full() const noexcept { return pairs_ + most_per_leaf_pair > capacity; }
 
-    /// Adds the pairs in the mask (bit 8 j + i for triangle i of `a` and j of `b`), not zero, unless `is_full`: copies
-    /// their corners to the queue by permutations, eight pairs at a time, and stores where they come from, for `emit`.
+    /// Adds the pairs in the mask (bit 8 j + i for triangles i of `a` and j of `b`), not zero, to a queue that is not
+    /// full: copies their corners by permutations, eight pairs at a time, and stores where they come from, for `emit`.
     inline void add(std::uint64_t mask, std::uint32_t leaf_a, const triangle_block& a, std::uint32_t leaf_b,
                     const triangle_block& b) noexcept {
         alignas(64) std::array<std::uint8_t, most_per_leaf_pair> bits{};
