@@ -67,9 +67,11 @@ struct scaled_double {
 /// first two products add up to the third, negated: their sum rounds by u E E E, and the last sum keeps the sign: 22 u
 /// E E E in all. Half a u more covers terms of second order and the rounding of E and the bounds.
 ///
-/// If coordinates are off by at most b, E is the extent plus 2 b. Both determinants are linear in the coordinates on
-/// one axis. A side changes by at most b times the sum, over four points, of twice the projected area of the triangle
-/// of the others: 4 b E E for each axis. A turn changes by b times the edges' lengths along the other axis: 2 b E.
+/// If coordinates are off by at most b, E is the computed extent W plus 2 b. Both determinants are linear in the
+/// coordinates on one axis. A side changes by at most b times the sum, over four points, of twice the projected area of
+/// the triangle of the others: 4 b E E for each axis. A turn changes by b times the edges' lengths along the other
+/// axis: 2 b E. What rounds is of the size of W: with it, 22.5 u E E E leaves 45 u b E E for each axis, more than 11
+/// roundings of the term 4 b E E and of the first sum, which may now differ from the third product by that term.
 namespace determinant_errors {
 inline constexpr double rounding_of_turn = 6.5, rounding_of_side = 22.5;
 inline constexpr double displacement_of_turn = 2, displacement_of_side = 4;

@@ -18,9 +18,9 @@ struct filtered_pairs {
 /// signs rounding could change. The signs of eight orientations decide (Devillers and Guigue, "Faster triangle-triangle
 /// intersection tests", INRIA RR-4488, 2002). Triangles with a common corner are hits.
 ///
-/// The error of a determinant is that of `determinant_errors`, with u = 2^-24 and the extents X, Y and Z. Underflow
-/// adds at most 20 times 2^-150 of a factor X, Y, Z or 1. After an overflow all comparisons are false, so that the pair
-/// stays undecided.
+/// The error of a determinant is that of `determinant_errors`, with u = 2^-24 and the extents X, Y and Z, which are
+/// enlarged by 16 u: then the product of two overflows before a component of a normal does, so that the error is
+/// infinite or NaN and the pair stays undecided. Underflow adds at most 20 times 2^-150 of a factor X, Y, Z or 1.
 class triangle_filter {
 public:
     /// Decides pairs by the signs of eight orientations: the corners of each triangle against the plane of the other,
@@ -33,9 +33,9 @@ public:
         corners s = load(a, stride);
         corners t = load(b, stride);
         const float e = error_of_b[0], f = error_of_b[1], g = error_of_b[2];
-        const simd::floats x = extent_of(s, t, 0) + 2 * e;
-        const simd::floats y = extent_of(s, t, 1) + 2 * f;
-        const simd::floats z = extent_of(s, t, 2) + 2 * g;
+        const simd::floats x = (extent_of(s, t, 0) + 2 * e) * (1 + 0x1p-20F);
+        const simd::floats y = (extent_of(s, t, 1) + 2 * f) * (1 + 0x1p-20F);
+        const simd::floats z = (extent_of(s, t, 2) + 2 * g) * (1 + 0x1p-20F);
         constexpr auto rounding = static_cast<float>(determinant_errors::rounding_of_side * 0x1p-24);
         constexpr auto displacement = static_cast<float>(determinant_errors::displacement_of_side);
         const error_bound error(rounding * (x * y * z) + displacement * (e * (y * z) + f * (x * z) + g * (x * y)) +
