@@ -71,8 +71,7 @@ TEST_CASE("Ratios are computed within a repeat") {
 
 TEST_CASE("Too few repeats for an interval are reported") {
     const std::string note =
-        "95 %: - if repeats, seeds or processes are too few; for one seed in one process,\n4 repeats are enough (2 for "
-        "the baseline)\n";
+        "95 %: - if repeats, seeds or processes are too few; for one seed in one process,\n4 repeats are enough\n";
     std::vector<row> rows;
     for (const auto& [repeat, slower] : {std::pair(0, 0.5), std::pair(1, 1.9), std::pair(2, 0.7), std::pair(3, 1.1)}) {
         rows.push_back(repeat_of("std", static_cast<std::uint64_t>(repeat), 1));

@@ -96,7 +96,7 @@ std::string count_text(double value) {
                                      : grouped(static_cast<std::uint64_t>(std::llround(value)));
 }
 
-/// "all compositions: sweep one_axis, triangle exact", the strategies that all share; empty if they share none.
+/// "all compositions: prepare none, triangle exact", the strategies that all share; empty if they share none.
 std::string common_line(const scene_summary& scene) {
     if (scene.common.empty()) return "";
     const auto is_automatic = [](const candidate_summary& candidate) { return candidate.name.is_automatic(); };
@@ -155,8 +155,7 @@ std::string explanation_of_columns(const scene_summary& scene) {
     if (any_has(scene, &candidate_summary::bytes)) text += "KiB: memory after the last frame, without meshes\n";
     if (std::ranges::any_of(scene.candidates, [](const candidate_summary& c) { return c.ratio && !c.ratio_interval; }))
         text +=
-            "95 %: - if repeats, seeds or processes are too few; for one seed in one process,\n4 repeats are enough (2 "
-            "for the baseline)\n";
+            "95 %: - if repeats, seeds or processes are too few; for one seed in one process,\n4 repeats are enough\n";
     return text;
 }
 

@@ -113,7 +113,7 @@ void set_labels(scene_summary& scene) {
     const auto composition = std::ranges::find(names, "", &candidate_name::engine);
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
         if (composition == names.end() || std::ranges::find(scene.differing, kind) != scene.differing.end()) continue;
-        if (const std::string value = text_in_line(composition->choices, {&kind, 1}); !value.empty())
+        if (const std::string& value = composition->choices[kind]; !value.empty())
             scene.common += (scene.common.empty() ? "" : ", ") + std::string(name_of(kind)) + " " + value;
     }
     for (candidate_summary& summary : scene.candidates) {

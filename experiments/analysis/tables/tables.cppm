@@ -82,7 +82,7 @@ struct scene_summary {
     std::uint64_t objects = 0, frames = 0;
     std::string digest;                          ///< of the ground truth, if there is one seed and an exact candidate
     std::vector<aabb::strategy_kind> differing;  ///< kinds in which the compositions differ
-    std::string common;  ///< the strategies that all compositions share, "sweep one_axis, triangle exact"
+    std::string common;  ///< the strategies that all compositions share, "prepare none, triangle exact"
     std::vector<candidate_summary> candidates;  ///< in the order of the rows; the first is the baseline
 };
 
