@@ -15,7 +15,7 @@ void add_explain(const command_parser& program) {
                          scene_arguments_help);
     command.option(
         "--seconds S", [&request](const std::string& text) { request.seconds = seconds_of(text, "run"); },
-        "Time for each scene (default 60); what does not fit into it is listed as not finished");
+        "Seconds for each scene (default 60); what does not fit into them is listed as not finished");
 }
 
 }  // namespace aabblab

@@ -12,7 +12,7 @@ void add_recommend(const command_parser& program) {
     command.argument("WHAT", &request.what, scene_arguments_help);
     command.option(
         "--seconds S", [&request](const std::string& text) { request.seconds = seconds_of(text, "run"); },
-        "Time for the runs (default 60); the ground truth may take as long again");
+        "Seconds for the runs (default 60); the ground truth may take as long again");
     command.option("--report FILE.html", &request.report, "Also write the results as a page");
 }
 

@@ -81,9 +81,11 @@ void add_validate(const command_parser& program) {
     const command_parser command = program.add_command(
         "validate", "Compare every composition of an experiment, or all possible ones, with the ground truth");
     auto& request = command.set_action(validate);
-    command.optional_argument("CONFIG", &request.config,
-                              "Config of the experiment (.toml); without it, every composition is validated");
-    command.flag("--quick", &request.quick, "Apply the quick settings of the config, for a first look");
+    command.optional_argument(
+        "CONFIG", &request.config,
+        "Config of the experiment (.toml); default: every broad phase, narrow phase and engine, on small "
+        "generated scenes of most kinds");
+    command.flag("--quick", &request.quick, "Apply the quick settings of CONFIG, for a first look");
 }
 
 }  // namespace aabblab

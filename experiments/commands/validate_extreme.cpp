@@ -33,7 +33,7 @@ void add_validate_extreme(const command_parser& program) {
         program.command("validate")
             .add_command("extreme", "Validate extreme scenes, invalid input, rounding modes and hard triangle pairs");
     command.footer([] {
-        std::string text = "Scenes, whose results must be exact unless they are 'rejected':\n";
+        std::string text = "Scenes (pairs_*: triangle pairs); results must be exact unless 'rejected':\n";
         for (const aabb::extreme_scene& scene : all_extreme_scenes(aabb::extreme_size::full).scenes)
             text += entry(scene.name, scene.summary + (scene.rejection.empty() ? "" : ": rejected"));
         return text.substr(0, text.size() - 1);  // the parser prints the last line end

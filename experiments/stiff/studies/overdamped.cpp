@@ -55,7 +55,8 @@ void run_overdamped(const stiff_setting& setting, stiff_result& result) {
 
 stiff_study overdamped_study() {
     return {"overdamped",
-            "A ball of 1 kg is released for a second on a floor whose dashpot has ten times the critical damping. Its "
+            "A ball of 1 kg is released on a floor whose dashpot has ten times the critical damping, and sinks for a "
+            "second. Its "
             "depth is compared while it sinks, after its time constant, and at the end. An implicit integrator takes "
             "steps as long as the motion allows, and few collision detections; stiffness limits an explicit one",
             "closed form of the overdamped oscillator under gravity", &run_overdamped};
