@@ -202,7 +202,7 @@ table measures_table(const scene_measures& m) {
         if (m.present > 2 && o[k] > 0.999 * static_cast<double>(m.present - 1))  // boxes overlap nearly all others
             add("flat axis", std::string(1, "xyz"[k]));
     add("size ratio", (m.boxes.size_ratio ? fmt::format("{:.3g}", *m.boxes.size_ratio) : "-") +
-                          ", the longest edge over that of the median box");
+                          ", the longest edge over the median longest edge of a box");
     add("pairs", fmt::format("{:.3g} overlapping pairs per object", m.pairs_per_object));
     add("clustering", fmt::format("{:.3g} times the pairs of uniformly distributed boxes", m.clustering));
     if (!m.motion) return measured;

@@ -99,7 +99,7 @@ std::vector<std::string> faster_at_other_lengths(const race_result& race) {
                                         is_fewer ? low : high, faster->name));
     }
     if (parts.empty())
-        parts.emplace_back("by these times, no other candidate is shown to be faster for fewer or more frames");
+        parts.emplace_back("extrapolated to fewer or more frames, no other candidate is shown to be faster");
     return parts;
 }
 

@@ -61,7 +61,8 @@ std::vector<std::string> legend() {
         "ratio: all ms divided by that of candidate 1 in the same repeat, the median over repeats, with its 95 % "
         "confidence interval; -: candidate 1 itself, or too few repeats.";
     return {
-        "all ms: build ms, first ms (frame 0) and all further frames. Times are of the repeat with the median all ms.",
+        "all ms: build ms, first ms (frame 0) and all further frames. Times are those of the repeat whose all ms is "
+        "the median.",
         ratio_text, ms_per_frame_text, build_ms_text, "KiB: memory without meshes."};
 }
 

@@ -18,15 +18,14 @@ namespace {
 /// The tables of the report on extreme scenes and hard pairs of triangles, without empty ones; a row per result.
 std::vector<named_table> tables_of(std::span<const extreme_row> rows) {
     std::vector<named_table> tables = {
-        {"extreme_boxes", "Boxes, compared with a plain double loop over all boxes",
-         scene_table(rows, row_group::boxes)},
+        {"extreme_boxes", "Boxes, compared with a plain loop over all pairs", scene_table(rows, row_group::boxes)},
         {"extreme_meshes", "Meshes, compared with CGAL's exact kernel; -2 +3: 2 false negatives, 3 false positives",
          scene_table(rows, row_group::meshes)},
         {"extreme_tests", "Meshes, by inexact triangle tests", inexact_scene_table(rows)},
-        {"extreme_classes", "The same by class", class_table(rows)},
+        {"extreme_classes", "Meshes, wrong pairs of inexact candidates by class", class_table(rows)},
         {"extreme_cases", "Hard pairs of triangles, by exact tests, and as meshes: all pairs, any one, their number",
          case_table(rows)},
-        {"extreme_case_tests", "The same by inexact triangle tests, in every order of corners, float and double",
+        {"extreme_case_tests", "Hard pairs of triangles, by inexact tests, in every order of corners, float and double",
          inexact_case_table(rows)}};
     std::erase_if(tables, [](const named_table& t) { return t.content.rows.empty(); });
     return tables;
@@ -150,11 +149,11 @@ suite_report run_extreme_suite(const std::filesystem::path& folder, const std::s
     if (shown) {
         print(
             "exact: the same pairs as the ground truth; rejected: invalid input, rejected as\n"
-            "it must be; 91 exact: all 91 are; -: not run, or, by class, no wrong pairs.\n"
+            "it must be; 91 exact: all 91 are; -: not run; in counts by class: none.\n"
             "flushed_, upward_: in a thread that flushes denormals to zero or rounds upward.\n"
             "beyond_float: an engine in double that finds no pairs is exact, too.\n"
-            "Classes of wrong pairs: near: a displacement by a millionth of the extent of\n"
-            "both triangles together changes the result; other: it does not.\n"
+            "Classes of wrong pairs: near: moving one triangle by a millionth of the extent\n"
+            "of both together changes the result; other: it does not.\n"
             "aabblab list engines explains engines.\n\n");
         for (const named_table& t : report.tables)
             print(wrapped(t.caption) + "\n\n" + to_text(t.content, output_width()) + "\n");

@@ -365,8 +365,7 @@ TEST_CASE("Finalists are ranked by ratios of times in the same repeats") {
 }
 
 TEST_CASE("Advice states for which numbers of frames another candidate is shown to be faster") {
-    const std::string none_faster =
-        "; by these times, no other candidate is shown to be faster for fewer or more frames.";
+    const std::string none_faster = "; extrapolated to fewer or more frames, no other candidate is shown to be faster.";
     // Whether the sentence that says which to use ends with `end`.
     const auto use_ends_with = [](std::vector<racer> finalists, const std::string& end, std::size_t frames = 100) {
         return aabblab::advice_of(race_with(std::move(finalists), frames)).front().ends_with(end);
