@@ -24,7 +24,7 @@ draft c10_claim(const measurements& m) {
         .claim = {.claim = "More than one cut through a box on an axis is not worth its cost",
                   .measured =
                       "time per frame of axial_cut with its limit over that without, where the limit changes the cut",
-                  .lead = "With segments widened until no box spans one, compared with segments not widened",
+                  .lead = "With segments widened until no box spans a whole one, compared with segments not widened",
                   .experiments = {"c10"}},
         .primary = {{{"span", "0.5"}, {"huge", "10"}}}};
     for (const condition& c : m.conditions_of("c10"))

@@ -57,8 +57,8 @@ draft c11_claim(const measurements& m) {
                                     : "with simple models far apart",
                 "objects");
         if (matches(c.scene(), large_crowd))
-            claim.remark =
-                "The traditional method spends " + share_text(c) + " of its time in the broad phase where models touch";
+            claim.remark = "The traditional method spends " + share_text(c) +
+                           " of its time in the broad phase where 60 models touch";
         else if (matches(c.scene(), far_apart) && !claim.remark.empty())
             claim.remark += ", and " + share_text(c) + " with 100,000 simple ones far apart";
     }

@@ -39,13 +39,17 @@ draft c13_claim(const measurements& m) {
         .primary = {{{"quantity", "time"}, {"objects", "100000"}, {"over", "objects 1000"}},
                     {{"quantity", "time"}, {"density", "0.1"}, {"over", "density 0.01"}},
                     {{"quantity", "time"}, {"ratio", "10"}, {"over", "ratio 1.01"}}}};
-    const std::array<std::string, 3> varied[] = {
-        {"smb_objects", "objects",
-         "with up to 100,000 boxes compared with 1,000, in a world that grows with their number"},
-        {"smb_density", "density", "at a volume fraction of up to 0.1 compared with 0.01"},
-        {"smb_sizes", "ratio", "at an edge ratio (longest over shortest edge) of up to 10 compared with 1.01"}};
-    for (const auto& [experiment, factor, subject] : varied) {
+    const std::array<std::string, 4> varied[] = {
+        {"smb_objects", "objects", "with 100,000 boxes, ",
+         "compared with 1,000 boxes, in a world that grows with their number"},
+        {"smb_density", "density", "at a volume fraction of 0.1, ",
+         "compared with a volume fraction of 0.01, on 10,000 boxes"},
+        {"smb_sizes", "ratio", "at an edge ratio of 10, ",
+         "compared with an edge ratio (longest over shortest edge) of 1.01, on 10,000 boxes"}};
+    for (const auto& [experiment, factor, greatest, compared] : varied) {
         const std::vector<condition>& conditions = m.conditions_of(experiment);
+        // The outcomes of several conditions state the values of the factor; that of a single one does not.
+        const std::string subject = conditions.size() == 2 ? greatest + compared : compared;
         const auto least =
             std::ranges::min_element(conditions, {}, [&](const condition& c) { return number_of(c.scene(), factor); });
         for (const quantity what : {quantity::time, quantity::bytes})

@@ -13,17 +13,18 @@ const std::vector<method> methods{{"insertion sort (traditional)", traditional},
                                   {"Shell sort, axial cut (improved)", improved},
                                   {"insertion sort, incremental", incremental}};
 
-/// The phrase by which the sentence on claim C1 names a scene other than the drifting one, with its displacement if
-/// boxes drift.
+/// The phrase by which the sentence on claim C1 names a scene other than the drifting one: its boxes, and their
+/// displacement if they drift.
 std::string subject_of(const condition& c) {
     const std::string scene = value_of(c.scene(), "scene");
-    if (scene == "still") return "where nothing moves";
-    if (scene == "teleport") return "where every box jumps";
-    const std::string place = scene == "clustered"     ? "in clusters"
-                              : scene == "mixed_sizes" ? "on boxes of mixed sizes"
-                                                       : "beside one huge box";
+    const std::string boxes = "on " + number_text(value_of(c.scene(), "objects")) + " boxes";
+    if (scene == "still") return boxes + " at rest";
+    if (scene == "teleport") return boxes + " that all jump in every frame";
+    const std::string place = scene == "clustered"     ? " in clusters"
+                              : scene == "mixed_sizes" ? " of mixed sizes"
+                                                       : ", one of them huge,";
     const bool is_in_spacings = value_of(c.scene(), "unit") == "spacing";
-    return place + " at 0.1 mean " + (is_in_spacings ? "spacings" : "extents") + " per frame";
+    return boxes + place + " at 0.1 mean " + (is_in_spacings ? "spacings" : "edges") + " per frame";
 }
 
 }  // namespace
@@ -46,22 +47,23 @@ draft c1_claim(const measurements& m) {
     const std::vector<const condition*> of_all_sizes =
         matching(conditions, {{"scene", "brownian"}, {"displacement", "0.1"}});
     const std::vector<const condition*> large = matching(conditions, {{"scene", "brownian"}, {"objects", "10000"}});
-    for (const condition* c : of_all_sizes) add(*c, "on drifting boxes at 0.1 mean extents per frame", "objects");
+    for (const condition* c : of_all_sizes) add(*c, "on cubes that drift by up to 0.1 edges per frame", "objects");
     for (const condition* c : large)
-        if (!matches(c->scene(), drifting)) add(*c, "on 10,000 drifting boxes at other displacements", "displacement");
+        if (!matches(c->scene(), drifting)) add(*c, "on 10,000 drifting cubes at other displacements", "displacement");
     // Both compositions with the paper's three lists, each sorted and swept.
     for (const condition& c : m.conditions_of("three_lists"))
         c1.add(endpoint_of(c, improved.with(kind::sweep, "all_axes"), traditional.with(kind::sweep, "all_axes"),
                            "frame_cpu_ms", {{"sweep", "all_axes"}}),
-               "with three sorted lists (sweep all_axes)", "displacement");
+               "on 10,000 drifting cubes, both with three sorted lists (sweep all_axes)", "displacement");
     for (const condition* c : large)
         c1.add(endpoint_of(*c, improved, incremental, "frame_cpu_ms", {{"over", "incremental"}}),
-               "on 10,000 drifting boxes, compared with the classic incremental sweep", "displacement");
+               "on 10,000 drifting cubes, compared with the classic incremental sweep", "displacement");
     for (const condition& c : conditions)
         if (!is_brownian(c)) add(c, subject_of(c));
     for (const condition* c : matching(conditions, drifting))
         for (const auto& [changed, subject] :
-             {std::pair{methods[1].tested, "with the cut alone, on 10,000 drifting boxes"},
+             {std::pair{methods[1].tested,
+                        "with the cut alone, on 10,000 cubes that drift by up to 0.1 edges per frame"},
               {uncut, "with Shell sort alone"}})
             c1.unjudged.emplace_back(endpoint_of(*c, changed, traditional, "frame_cpu_ms")).subject = subject;
     table changes = factors_table(factors_of(conditions));

@@ -79,7 +79,7 @@ draft c2_claim(const measurements& m) {
                        .measured =
                            "comparisons and moves per element at 10 N elements over those at N, by linear regression "
                            "against log N, from 10,000 elements on",
-                       .lead = "Work per element when N grows tenfold",
+                       .lead = "Work (comparisons and moves) per element when N grows tenfold",
                        .experiments = {"c2"}},
              .primary = {{{"sort", "insertion"}, {"displacement", "0.1"}},
                          {{"sort", "shell:gaps=four_one"}, {"displacement", "0.1"}},

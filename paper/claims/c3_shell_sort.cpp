@@ -69,7 +69,7 @@ draft c3_claim(const measurements& m) {
     draft c3{
         .claim = {.claim = "Shell sort beats insertion sort under temporal coherence",
                   .measured = "time per frame to update and sort the boxes, shell with Ciura's gaps over insertion",
-                  .lead = "Shell sort compared with insertion sort",
+                  .lead = "Time to update and sort the boxes, Shell sort compared with insertion sort",
                   .experiments = {"c3"}},
         .primary = {drifting, {{"scene", "line"}, {"objects", "100000"}, {"displacement", "300"}}}};
     const std::vector<condition>& conditions = m.conditions_of("c3");

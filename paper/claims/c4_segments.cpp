@@ -77,7 +77,7 @@ table automatic_table(const std::vector<condition>& conditions) {
 /// limit": the most segments with at most one cut per box, which a request for more yields.
 draft c4_claim(const measurements& m) {
     draft c4{
-        .claim = {.claim = "More segments are faster until a box spans one; tiny segments are not needed",
+        .claim = {.claim = "More segments are faster until a box spans a whole one; tiny segments are not needed",
                   .measured = "time per frame at the limit of one cut per box over that with eight segments per axis; "
                               "with each number of segments over that with the next smaller one, up to the limit; and "
                               "with the automatic number over that at the limit",
@@ -102,10 +102,11 @@ draft c4_claim(const measurements& m) {
                            {{"axes", std::to_string(axes)}, {"segments", finer.name}, {"over", coarser.name}});
     };
     const auto boxes_of = [](const condition& c) {
-        return std::string(is_brownian(c) ? "drifting boxes" : "clusters");
+        return number_text(value_of(c.scene(), "objects")) +
+               (is_brownian(c) ? " drifting cubes" : " cubes in clusters");
     };
     for_each_cut([&](const condition& c, int axes) {
-        const std::string gloss = is_brownian(c) ? " (the most segments such that no box spans one)" : "";
+        const std::string gloss = is_brownian(c) ? " (the most segments such that no box spans a whole one)" : "";
         c4.add(ratio(c, axes, limit, {"8", "8"}),
                boxes_of(c) + " at the limit" + gloss + ", compared with eight segments per axis", "axes");
     });

@@ -96,6 +96,11 @@ table times_table(const std::vector<condition>& conditions) {
     return t;
 }
 
+/// The side of a world in edges of its cubes, which fill the share `density` of it.
+double side_of(const condition& c) {
+    return std::cbrt(objects_of(c) / number_of(c.scene(), "density"));
+}
+
 /// Adds to claim C5 how a grid's cost grows from the smallest world to the largest, with the same number of boxes: its
 /// bytes, and its time over that of the axial cut (times alone fall in a sparse world, with its fewer pairs). Claims
 /// favour ratios below 1, so growth is expressed as the cost in the small world over that in the large one.
@@ -104,6 +109,7 @@ void add_growth(const std::vector<condition>& worlds, draft& c5) {
     if (worlds.size() < 2) return;
     const condition& small = worlds.front();
     const condition& large = worlds.back();
+    const std::string cubes = number_text(value_of(small.scene(), "objects")) + " cubes";
     const auto add = [&](const std::string& what, const std::string& subject, const cells& above, const cells& below,
                          quantity compared, expectation expected) {
         c5.add({.where = {{"scene", "brownian"}, {"comparison", what}},
@@ -118,15 +124,17 @@ void add_growth(const std::vector<condition>& worlds, draft& c5) {
                                             {"cells chosen anew", "auto", "the automatic cell size"}}) {
         const selection tested = grid(size);
         const std::string subject =
-            fmt::format("a grid with {}, in the smallest world compared with the largest", text);
+            fmt::format("a grid with {} for {}, in a world {:.0f} edges wide compared with one of {:.0f}", text, cubes,
+                        side_of(small), side_of(large));
         add(std::string("time of a grid over that of axial_cut, ") + label + ", small world over large", subject,
             small.log_ratios(tested, cut, measured("frame_cpu_ms")),
             large.log_ratios(tested, cut, measured("frame_cpu_ms")), quantity::relative_time, expectation::less);
         add(std::string("bytes of a grid, ") + label + ", small world over large", subject, small.logs(tested, bytes),
             large.logs(tested, bytes), quantity::bytes, expectation::less);
     }
-    add("bytes of axial_cut, large world over small", "the cut, in the largest world compared with the smallest",
-        large.logs(cut, bytes), small.logs(cut, bytes), quantity::bytes, expectation::not_more);
+    add("bytes of axial_cut, large world over small",
+        "the cut for " + cubes + ", in the wider world compared with the other", large.logs(cut, bytes),
+        small.logs(cut, bytes), quantity::bytes, expectation::not_more);
 }
 
 /// Times of grids over that of the axial cut against the cell size: one panel per number of objects.
@@ -157,8 +165,6 @@ figure cell_figure(const std::map<double, std::vector<const condition*>>& by_obj
 figure world_figure(const std::string& name, const std::string& quantity_name, const std::string& y_label,
                     const std::vector<condition>& worlds, const row_value& value) {
     const method methods[] = {{"grid, cells of 2", grid("2")}, {"grid, auto", grid("auto")}, {"axial cut", cut}};
-    // The side is in edges of a cube: the cubes fill the share `density` of the world.
-    const auto side_of = [](const condition& c) { return std::cbrt(objects_of(c) / number_of(c.scene(), "density")); };
     return log_log(name,
                    quantity_name +
                        " of the broad phase against the side of the world, for the same 2,000 cubes: a grid with "
@@ -205,13 +211,13 @@ draft c5_claim(const measurements& m) {
         };
         add(
             over_best_single,
-            "the cut in its worst of four scenes, compared with the best single cell size in its own worst (slowdown: "
-            "time over that of a scene's fastest cell size)",
+            "slowdown (time over that of a scene's fastest cell size) in the worst of four scenes, the cut's compared "
+            "with that of the best single cell size",
             [&](const resample& d) { return scenes.worst_regret_of_cut(d) - scenes.least_worst_regret(d); },
             quantity::slowdown, expectation::less);
         add(
             "axial_cut over each scene's best cell size",
-            "the cut in its worst scene, compared with the fastest cell size there",
+            "time of the cut in its worst scene, compared with the fastest cell size there",
             [&](const resample& d) { return scenes.worst_regret_of_cut(d); }, quantity::time, expectation::not_more);
         const resample as_measured(size.processes, size.seeds, level::none, /*random=*/0);  // every cell once
         c5.claim.remark = fmt::format(

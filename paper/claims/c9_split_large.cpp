@@ -32,7 +32,7 @@ draft c9_claim(const measurements& m) {
         for (const char* size : {"4", "8"})
             if (const selection split = split_by("split_large", size); has_pieces(c, split))
                 c9.add(endpoint_of(c, split, unsplit, "frame_cpu_ms", {{"split_large", size}}),
-                       "where boxes are split");
+                       "in the broad phase where boxes are split");
     for (const condition& c : m.conditions_of("c9_geometry"))
         for (const char* size : {"2", "4", "8"}) {
             const selection split = split_by("split_mesh", size);
@@ -45,7 +45,7 @@ draft c9_claim(const measurements& m) {
         }
     c9.claim.figures.push_back(
         log_log("c9",
-                "Time of the broad phase with boxes longer than four mean extents split, over that without (the line "
+                "Time of the broad phase with boxes longer than four mean edges split, over that without (the line "
                 "at 1), against the number of huge boxes, by their edge over the side of the world; 95 % intervals.",
                 "huge boxes", "time over that without splitting",
                 lines_by_span(c9.endpoints, {{"split_large", "4"}}, "not split")));

@@ -27,7 +27,7 @@ struct endpoint {
     support uncorrected = support::undecided;  ///< without correction, from its own interval
     bool is_primary = false;
     quantity compared = quantity::time;
-    /// The label of the clause that reports it in a sentence: "on drifting boxes". Without one it is not mentioned.
+    /// The label of the clause that reports it in a sentence: "on drifting cubes". Without one it is not mentioned.
     std::optional<std::string> subject{};
     std::string along{};   ///< the factor that orders the endpoints of the clause; empty if unordered
     std::string source{};  ///< the rows: "figure1: frame_cpu_ms of sort=shell over sort=insertion"
@@ -109,7 +109,7 @@ struct reproduction {
 /// Three decimals, so that 1.048 does not look like the band's edge; fewer from 10 on, four below 0.01.
 [[nodiscard]] std::string ratio_digits_of(double ratio);
 
-/// The verdict in words, from all endpoints of a claim: one clause per subject, "on drifting boxes: 2.0 times as fast".
+/// The verdict in words, from all endpoints of a claim: one clause per subject, "on drifting cubes: 2.0 times as fast".
 [[nodiscard]] std::string sentence_of(std::span<const endpoint> endpoints, const std::string& lead = {});
 /// The verdict of each claim, with the primary ratio, its interval and its condition.
 [[nodiscard]] table verdict_table(const reproduction& results);
@@ -248,7 +248,7 @@ inline constexpr const char* compressed = "compressed:leaf_test=triangle_box";
 
 /// Explains a column `unit` of tables.
 inline constexpr const char* unit_legend =
-    " The unit is that of the displacement: the mean extent of a box, the mean spacing, or, if empty, a cube's edge.";
+    " The unit is that of the displacement: extent, the mean edge of a box; spacing; if empty, a cube's edge.";
 
 /// "10,000 to 100,000": groups the digits of integers among words; other words are unchanged.
 [[nodiscard]] std::string number_text(const std::string& value);

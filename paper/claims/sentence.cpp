@@ -14,7 +14,7 @@ constexpr double equality_threshold = 1.1;
 
 /// The nouns in the order of `quantity`; empty where labels name the quantity.
 std::string noun_of(quantity compared) {
-    constexpr std::array nouns{"time", "bytes", "box tests", "", "slowdown", "time relative to the cut's"};
+    constexpr std::array nouns{"time", "bytes", "box tests", "", "slowdown", "ratio of its time to the cut's"};
     return nouns[static_cast<std::size_t>(compared)];
 }
 
@@ -96,7 +96,7 @@ std::string range_text(const std::vector<stretch>& stretches, std::size_t i) {
     if (factor == "objects") return " with " + values + (values == "1" ? " object" : " objects");
     if (factor == "axes") return " on " + values + (values == "1" ? " axis" : " axes");
     if (factor == "inversions") return " at " + values + " inversions per element";
-    if (factor == "displacement") return " at " + values + " mean extent" + (values == "1" ? "" : "s") + " per frame";
+    if (factor == "displacement") return " at " + values + (values == "1" ? " edge" : " edges") + " per frame";
     return " at " +
            (factor == "ratio"     ? "an edge ratio"
             : factor == "density" ? "a volume fraction"
@@ -129,7 +129,7 @@ std::string unordered_outcomes(std::vector<endpoint> endpoints) {
     return text + (open == 0 ? "" : fmt::format(" in {} of {} conditions, {} undecided", count - open, count, open));
 }
 
-/// What was compared, which may be empty, and what was found: "on drifting boxes", "2.0 times as fast".
+/// What was compared, which may be empty, and what was found: "on drifting cubes", "2.0 times as fast".
 struct clause {
     std::string label;
     std::string outcomes;
@@ -145,7 +145,7 @@ clause clause_of(std::span<const endpoint> endpoints, const endpoint& member) {
     return {*member.subject, ordered_outcomes(reported)};
 }
 
-/// "Split at the median, compared with the mean: 1.13 times as long"; without lead and label only the outcomes.
+/// "Shell sort, on boxes: 1.13 times as long"; without lead and label only the outcomes.
 std::string clause_text(const std::string& lead, const clause& c) {
     const std::string label = lead + (lead.empty() || c.label.empty() ? "" : ", ") + c.label;
     return label + (label.empty() ? "" : ": ") + c.outcomes;
@@ -163,7 +163,9 @@ std::string classic_sweep_text(std::span<const claim_result> claims) {
     if (!claim) return "";
     for (const endpoint& e : claim->primaries)
         if (value_of(e.where, "over") == "incremental")
-            return "; " + clause_text("with little motion", clause_of({&e, 1}, e));
+            return "; " + clause_text(fmt::format("with little motion (up to {} edges per frame)",
+                                                  value_of(factors_of(e), "displacement")),
+                                      clause_of({&e, 1}, e));
     return "";
 }
 

@@ -158,8 +158,9 @@ named_table null_control(const measurements& m) {
     const auto excluding_1 =
         std::ranges::count_if(ratios, [](const endpoint& e) { return e.range.low > 1 || e.range.high < 1; });
     const std::string text = fmt::format(
-        "Null control: time per frame of a composition under two names, the second name over the first. {} of the {} "
-        "intervals {} a ratio of 1; by chance one in twenty would. Without correction",
+        "Null control: time per frame of a composition under two names, the second name over the first; "
+        "displacements in mean edges. {} of the {} intervals {} a ratio of 1; by chance one in twenty would. Without "
+        "correction",
         excluding_1 == 0 ? "None" : std::to_string(excluding_1), ratios.size(),
         excluding_1 > 1 ? "exclude" : "excludes");
     return {"null_control",

@@ -257,7 +257,7 @@ TEST_CASE("A claim that holds from some size on states this size") {
     INFO(c1.sentence);
     CHECK(text_of(c1.verdict) == "holds");
     CHECK(c1.sentence.starts_with(
-        "On drifting boxes at 0.1 mean extents per frame: 2.0 times as long with 100 objects, 10 times as fast with "
+        "On cubes that drift by up to 0.1 edges per frame: 2.0 times as long with 100 objects, 10 times as fast with "
         "1,000 or more objects"));
 }
 
