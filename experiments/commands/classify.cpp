@@ -75,8 +75,8 @@ void add_classify(const command_parser& program) {
         "classify", "Test whether two triangles intersect, and where: reads a pair per line, writes a result per line");
     auto& request = command.set_action(classify);
     command.argument("FILE", &request.file,
-                     "18 numbers per line, decimal or C99 hexadecimal, separated by blanks or commas; # begins a "
-                     "comment; - is standard input");
+                     "18 numbers per line, the corners of both triangles, decimal or C99 hexadecimal, separated by "
+                     "blanks or commas; # begins a comment; - is standard input");
     command.option("--triangle R", &request.triangle,
                    "Triangle test (default exact): a strategy, or a library test that `list` shows");
     command.flag("--double", &request.keep_doubles, "Keep the numbers as doubles instead of rounding to float");

@@ -21,7 +21,8 @@ void add_compare(const command_parser& program) {
     auto& request = command.set_action(run);
     command.argument("A", &request.a, "Results folder of one experiment or several");
     command.argument("B", &request.b, "Results folder to compare with A; the column B/A has B's value over A's");
-    command.flag("--times", &request.times, "Also compare milliseconds, if both folders come from one machine");
+    command.flag("--times", &request.times,
+                 "Also compare milliseconds per frame, if both folders come from one machine");
     command.flag("--all", &request.list_all, "Also list what is unchanged or undecided");
 }
 

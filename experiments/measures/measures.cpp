@@ -191,7 +191,7 @@ table measures_table(const scene_measures& m) {
     table measured = empty_table({"measured", ""});
     const auto add = [&](const char* name, const std::string& value) { measured.rows.push_back({name, value}); };
     add("objects", grouped(m.objects));
-    add("frames", m.frames > frames_measured ? fmt::format("{}; this table is measured in frames 0 to {}",
+    add("frames", m.frames > frames_measured ? fmt::format("{}; sizes and pairs: frame 0; motion: frames 0 to {}",
                                                            grouped(m.frames), frames_measured - 1)
                                              : grouped(m.frames));
     if (m.present != m.objects) add("present", grouped(m.present) + " of them in the first frame");

@@ -101,7 +101,7 @@ figure verdict_figure(const reproduction& reproduced) {
     constexpr double least_shown = 0.2;
     figure f{.name = "verdicts",
              .caption = fmt::format("The first primary ratio of every claim with its 95 % interval, and the band of no "
-                                    "difference. Ratios below {} are left out.",
+                                    "difference. Ratios below 1 favour the claim; those below {} are left out.",
                                     least_shown),
              .x = {"claim"},
              .y = {"ratio", /*logarithmic=*/true}};

@@ -102,8 +102,8 @@ void run_plate(const stiff_setting& setting, stiff_result& result) {
 stiff_study plate_study() {
     return {
         "plate",
-        "A body of 100 mm is shot at a mesh plate of 10 mm many times, at phases spread evenly over a time step; a "
-        "shot tunnels if no step detects it. Plain boxes bound the body at the end of a step. Swept boxes bound it "
+        "A body 100 mm long is shot at a mesh plate 10 mm thick many times, at phases spread evenly over a time step; "
+        "a shot tunnels if no step detects it. Plain boxes bound the body at the end of a step. Swept boxes bound it "
         "from step to step; if they overlap, the step is tested in parts that are too short for the body to tunnel",
         "1 - extent/displacement if the displacement per step exceeds the extent of body and plate together; none with "
         "swept boxes",

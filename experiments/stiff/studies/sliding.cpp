@@ -127,19 +127,20 @@ void run_sliding(const stiff_setting& setting, stiff_result& result) {
 }
 
 stiff_study sliding_study() {
-    return {"sliding",
-            "A mesh of 64 teeth, each a triangle, slides on its tips over faces, edges and vertices of a flat mesh, in "
-            "sizes of 1 m, 10 mm and 0.1 mm. The meshes are oblique, or lie on a lattice, where no coordinate is "
-            "rounded. Each tip whose contact is detected carries a 64th of the load. A 100,000th of its size above the "
-            "flat mesh, there is no load",
-            "the load, to one in a thousand, without a jump; rounding of vertices to float allows 1e-4",
-            &run_sliding,
-            {figure{.name = "sliding_force",
-                    .caption = "The force between two meshes of 10 mm that slide along each other, oblique and pressed "
-                               "together by a 100,000th, relative to the load. Methods that keep it are not drawn.",
-                    .x = {"displacement (sizes)"},
-                    .y = {"force (relative to the load)"},
-                    .lines = {{"exact", series_style::level, {{0, 1}}}}}}};
+    return {
+        "sliding",
+        "A mesh of 64 teeth, each a triangle, slides on its tips over faces, edges and vertices of a flat mesh, "
+        "both in sizes of 1 m, 10 mm and 0.1 mm. The meshes are oblique, or lie on a lattice, where no coordinate is "
+        "rounded. Each tip whose contact is detected carries a 64th of the load. A 100,000th of its size above the "
+        "flat mesh, there is no load",
+        "the load, to one in a thousand, without a jump; rounding of vertices to float allows 1e-4",
+        &run_sliding,
+        {figure{.name = "sliding_force",
+                .caption = "The force between two meshes of 10 mm that slide along each other, oblique and pressed "
+                           "together by a 100,000th, relative to the load. Methods that keep it are not drawn.",
+                .x = {"displacement (sizes)"},
+                .y = {"force (relative to the load)"},
+                .lines = {{"exact", series_style::level, {{0, 1}}}}}}};
 }
 
 }  // namespace aabblab
