@@ -81,7 +81,8 @@ void add_classify(const command_parser& program) {
                    "Triangle test (default exact): a strategy, or a library test that `list` shows");
     command.flag("--double", &request.keep_doubles, "Keep the numbers as doubles instead of rounding to float");
     command.flag("--geometry", &request.geometry,
-                 "Write intersections instead of 0 or 1: kind, number of vertices, vertices, error bound on each axis");
+                 "Write intersections instead of 0 or 1: kind, number of vertices, vertices, error "
+                 "bounds on x, y, z");
 }
 
 }  // namespace aabblab

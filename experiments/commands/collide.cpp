@@ -223,7 +223,8 @@ void add_collide(const command_parser& program) {
         "--out FILE", &request.out,
         "CSV file for pairs: a,b; with --self a,b,shared_vertices; --self=no-adjacent a,b; --poses pose,a,b");
     command.flag("--geometry", &request.geometry,
-                 "Add to each pair the triangles' intersection, in world coordinates: kind, vertices, error bound");
+                 "Add to each pair the triangles' intersection, in world coordinates: columns kind, number of "
+                 "vertices, error bounds on x, y, z, vertices");
     command.flag("--exit-code", &request.exit_code,
                  "Exit with status 1 (as diff) if triangles intersect; with --self=all, only if two without a shared "
                  "corner intersect");

@@ -83,12 +83,13 @@ void add_contacts(const command_parser& program) {
     command.argument(
         "MESH", &request.meshes,
         "Mesh files (OFF, OBJ, PLY, STL, glTF) or shapes; object i has mesh i modulo the number of meshes");
-    request.method.add_to(command, "build, tree and triangle test");
+    request.method.add_to(command, "build, tree and triangle test; the broad phase keeps its strategies");
     add_touching(command, &request.touching, "contacts");
     command.option("--out FILE", &request.out,
                    "CSV file for the contacts: rows frame,object_a,object_b,triangle_a,triangle_b");
     command.flag("--geometry", &request.geometry,
-                 "Add to each contact the triangles' intersection, in world coordinates: kind, vertices, error bound");
+                 "Add to each contact the triangles' intersection, in world coordinates: columns kind, number of "
+                 "vertices, error bounds on x, y, z, vertices");
     command.flag("--json", &request.json, "Print the summary as JSON");
 }
 
