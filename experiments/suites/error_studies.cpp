@@ -16,6 +16,8 @@ void print_tables(std::span<const error_point> points) {
         print(wrapped(group_statement(points, group)) +
               "\n\nwrong: share of all pairs; FN: false negatives, share of intersecting pairs;\n"
               "FP: false positives, share of disjoint pairs; fewest wrong first\n"
+              "ns/pair: the median over batches of up to 4,096 pairs, then the mean over sets\n"
+              "of pairs; a set of only one batch, as with --quick, has an unreliable time\n"
               "aabblab list triangle and list library_tests explain names and parameters\n\n" +
               to_text(error_summary(points, group), output_width()) + "\n");
         print("By set of pairs: FN and FP, joined by +, here as shares of all pairs of the set\n");
@@ -32,7 +34,8 @@ void print_tables(std::span<const hit_point> points) {
         print(
             fmt::format("Intersections of triangles of {}s, compared with CGAL's exact construction\n"
                         "differ: hits with another kind or number of corners; error/bound: the greatest\n"
-                        "ratio of an error to its bound; error, bound: the greatest error and its bound\n\n{}\n",
+                        "ratio of an error to its bound; error, bound: the greatest error and its bound;\n"
+                        "ns/hit: the median over batches of up to 1,024 hits\n\n{}\n",
                         in_double ? "double" : "float", to_text(shown, output_width())));
     }
 }
