@@ -116,7 +116,8 @@ draft c6_claim(const measurements& m) {
                   .measured = "time of a triangle-box test over that of a box test, which encloses the transformed box "
                               "by an axis-aligned one, or tests it as an oriented box on six or all fifteen axes; in "
                               "whole queries, of leafless over canonical",
-                  .lead = "Testing a leaf's triangle, with its transformation into the other mesh's frame",
+                  .lead =
+                      "Testing a leaf's triangle against a box, with its transformation into the other mesh's frame",
                   .experiments = {"figure2"}},
         .primary = {{{"leaf_test", "triangle_box"}, {"over", "box"}, {"leaf of", b_in_frame_of_a}},
                     {{"leaf_test", "triangle_box"}, {"over", "rotated_box_6"}},
@@ -138,9 +139,9 @@ draft c6_claim(const measurements& m) {
     add_test("triangle_box", "rotated_box_6", "compared with an oriented box on six axes");
     add_test("triangle_box", "rotated_box_15", "compared with an oriented box on all fifteen axes");
     add_test("triangle_box_moller", "box",
-             "with M\u00f6ller's original test, compared with the AABB of the transformed box");
+             "with M\u00f6ller's original triangle-box test, compared with the AABB of the transformed box");
     add_test("triangle_box_moller", "rotated_box_15",
-             "with M\u00f6ller's original test, compared with an oriented box on fifteen axes");
+             "with M\u00f6ller's original triangle-box test, compared with an oriented box on fifteen axes");
     add_test("triangle_aabb", "box",
              "testing the AABB of the transformed triangle, compared with that of the transformed box");
     add_test("triangle_box", "box", "testing the triangle without a transformation, compared with its stored box",
@@ -149,9 +150,11 @@ draft c6_claim(const measurements& m) {
              "testing the AABB of the triangle without a transformation, compared with its stored box",
              std::string(frame_a_suffix));
     const std::pair<std::string, const char*> queries[] = {
-        {"triangle_box", "whole queries that test a leaf's triangle, compared with those that test its stored box"},
+        {"triangle_box",
+         "whole queries that test a leaf's triangle against boxes, compared with those that test its stored box"},
         {"triangle_aabb",
-         "whole queries that compute a leaf's box and test that, compared with those that test a stored box"},
+         "whole queries that compute and test the box of a leaf's triangle, compared with those that test a stored "
+         "box"},
         {"none", "whole queries that test only the box of a leaf's parent, compared with those that test the leaf's"}};
     for (const condition& c : m.conditions_of("figure2"))
         for (const auto& [test, subject] : queries) {
