@@ -70,12 +70,13 @@ int run(const atlas_request& request) {
 void add_atlas(const command_parser& program) {
     const command_parser command = program.add_command(
         "atlas",
-        "Map the fastest composition or engine of each scene, and the slowdown of each candidate if used everywhere");
+        "Map the fastest composition or engine of each scene, and the slowdown of each candidate relative to it");
     auto& request = command.set_action(run);
     command.flag("--quick", &request.quick, "Use small scenes and few repeats: a minute instead of half an hour");
     command.flag("--judge", &request.judge, "Measure nothing: draw the maps of existing results");
     command.optional_argument("RESULTS", &request.source,
-                              "With --judge: an archive or folder of results, of atlas or reproduce, instead of --out");
+                              "With --judge: archive or folder of results, from atlas or reproduce, instead of the "
+                              "folder of --out");
     command.option("--out DIR", &request.out,
                    "Folder of results and maps (default results/atlas; with --quick results/atlas-quick; with RESULTS "
                    "results/atlas-judged)");

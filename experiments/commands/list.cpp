@@ -182,7 +182,7 @@ void add_list(const command_parser& program) {
         "engines: other libraries, and brute force\nlibrary_tests: triangle tests of engines, for classify and errors\n"
         "integrators: time integration methods of validate stiff\nscenes: generated or recorded scenes\n"
         "shapes: generated meshes\npairs: classes of generated triangle pairs, for errors\n"
-        "recorded: groups of columns that a run records\nmetrics: quantities computed from these columns");
+        "recorded: groups of columns in results.csv\nmetrics: quantities computed from these columns");
 }
 
 }  // namespace aabblab

@@ -53,7 +53,7 @@ void add_order(const command_parser& program) {
     command.option("--numbers FILE", &request.numbers, "CSV file for the original indices: rows triangle,was");
     command.footer(
         "For such a mesh, the build file_order with the tree implicit:vertices=fetched (read from the mesh, not "
-        "copied) stores only boxes, down to those of eight triangles, in 1.2 bytes per triangle. collide, contacts "
+        "copied) stores only boxes, the smallest around eight triangles, in 1.2 bytes per triangle. collide, contacts "
         "and configs also accept FILE:order=BUILD and SHAPE:triangles=N,order=BUILD, which need no file. Sorting twice "
         "gives another order, as a build depends on the order of its input.");
 }

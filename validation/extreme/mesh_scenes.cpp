@@ -148,7 +148,7 @@ std::vector<extreme_scene> mesh_scenes(extreme_size size) {
         [many] { return posed(std::vector{coincident(many), soup_of({crossing_triangle})}, {{{}, {}}}); });
     against_one.query = extreme_query::count_pairs;
     extreme_scene against_itself =
-        scene_of_meshes("many_against_many", "these copies against themselves, in a query for any one pair",
+        scene_of_meshes("many_against_many", "these copies against themselves, until one pair is found",
                         [many] { return posed(coincident(many), {{{}, shifted(0.5, 0.5, 0)}}); });
     against_itself.query = extreme_query::first_pair;
     // The largest layout has an internal node of 32 bytes and a leaf of 28 per triangle; the rest is for stacks.
