@@ -123,9 +123,8 @@ void add_growth(const std::vector<condition>& worlds, draft& c5) {
     for (const auto& [label, size, text] : {std::tuple{"cells of 2", "2", "cells of two box edges"},
                                             {"cells chosen anew", "auto", "the automatic cell size"}}) {
         const selection tested = grid(size);
-        const std::string subject =
-            fmt::format("a grid with {} for {}, in a world {:.0f} edges wide compared with one of {:.0f}", text, cubes,
-                        side_of(small), side_of(large));
+        const std::string subject = fmt::format("a grid with {} for {}, in a world {:.0f} edges wide instead of {:.0f}",
+                                                text, cubes, side_of(small), side_of(large));
         add(std::string("time of a grid over that of axial_cut, ") + label + ", small world over large", subject,
             small.log_ratios(tested, cut, measured("frame_cpu_ms")),
             large.log_ratios(tested, cut, measured("frame_cpu_ms")), quantity::relative_time, expectation::less);
@@ -133,7 +132,7 @@ void add_growth(const std::vector<condition>& worlds, draft& c5) {
             large.logs(tested, bytes), quantity::bytes, expectation::less);
     }
     add("bytes of axial_cut, large world over small",
-        "the cut for " + cubes + ", in the wider world compared with the other", large.logs(cut, bytes),
+        "the cut for " + cubes + ", in the wider world instead of the other", large.logs(cut, bytes),
         small.logs(cut, bytes), quantity::bytes, expectation::not_more);
 }
 
@@ -211,8 +210,8 @@ draft c5_claim(const measurements& m) {
         };
         add(
             over_best_single,
-            "slowdown (time over that of a scene's fastest cell size) in the worst of four scenes, the cut's compared "
-            "with that of the best single cell size",
+            "slowdown of the cut (its time over that of a scene's fastest cell size) in the worst of four scenes, "
+            "compared with that of the best single cell size",
             [&](const resample& d) { return scenes.worst_regret_of_cut(d) - scenes.least_worst_regret(d); },
             quantity::slowdown, expectation::less);
         add(

@@ -153,8 +153,7 @@ draft c6_claim(const measurements& m) {
         {"triangle_box",
          "whole queries that test a leaf's triangle against boxes, compared with those that test its stored box"},
         {"triangle_aabb",
-         "whole queries that compute and test the box of a leaf's triangle, compared with those that test a stored "
-         "box"},
+         "whole queries that compute and test a leaf's box, compared with those that test a stored box"},
         {"none", "whole queries that test only the box of a leaf's parent, compared with those that test the leaf's"}};
     for (const condition& c : m.conditions_of("figure2"))
         for (const auto& [test, subject] : queries) {

@@ -14,7 +14,7 @@ constexpr double equality_threshold = 1.1;
 
 /// The nouns in the order of `quantity`; empty where labels name the quantity.
 std::string noun_of(quantity compared) {
-    constexpr std::array nouns{"time", "bytes", "box tests", "", "slowdown", "ratio of its time to the cut's"};
+    constexpr std::array nouns{"time", "bytes", "box tests", "", "slowdown", "time relative to the cut's"};
     return nouns[static_cast<std::size_t>(compared)];
 }
 
@@ -163,7 +163,7 @@ std::string classic_sweep_text(std::span<const claim_result> claims) {
     if (!claim) return "";
     for (const endpoint& e : claim->primaries)
         if (value_of(e.where, "over") == "incremental")
-            return "; " + clause_text(fmt::format("with little motion (up to {} edges per frame)",
+            return ". " + clause_text(fmt::format("Its time with little motion (up to {} edges per frame)",
                                                   value_of(factors_of(e), "displacement")),
                                       clause_of({&e, 1}, e));
     return "";
@@ -237,7 +237,7 @@ std::vector<std::string> headline_of(std::span<const claim_result> claims) {
     const auto count = [&](verdict_kind v) { return std::ranges::count(claims, v, &claim_result::verdict); };
     const std::string broad_phase =
         clause_text(
-            "The improved broad phase (Shell sort, axial cut), compared with the traditional one (insertion "
+            "Time of the improved broad phase (Shell sort, axial cut), compared with the traditional one (insertion "
             "sort, no cut)",
             first_clause(claims, "C1")) +
         classic_sweep_text(claims) + ".";

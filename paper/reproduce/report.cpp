@@ -255,11 +255,10 @@ page report_of(const reproduction& reproduced, std::span<const report_section> s
             "was made for the method that the paper builds on (Li, Feng and Owen, \"SMB: collision detection based "
             "on temporal coherence\", 2006). Only the primary ratios of a claim, those before \"Secondary\" in its "
             "text, decide its verdict. Broad phase means the paper's global search, narrow phase its local detection; "
-            "the scene brownian has drifting cubes. A displacement is that of each moving box per frame, in brownian "
-            "the greatest. A mean spacing is the edge of a cube as large as a box's share of the world, gaps "
-            "included. {}, {} size. Commit {}, {}, {}. {} "
-            "rows of {} scenes, each with up to {} seeds; per composition and seed up to {} repeats in all, over {} "
-            "processes.",
+            "the scene brownian has drifting cubes. A displacement is how far a moving box moves per frame, in "
+            "brownian at most. A mean spacing is the cube root of the world's volume per box. {}, {} size. Commit {}, "
+            "{}, {}. {} rows of {} scenes, each with up to {} seeds; per composition and seed up to {} repeats in all, "
+            "over {} processes.",
             reproduced.claims.size(), origin.date, origin.size, origin.commit, origin.compiler, origin.cpu,
             grouped(origin.rows), origin.scenes, origin.seeds, origin.repeats, origin.processes),
         "soft");
