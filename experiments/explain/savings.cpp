@@ -102,11 +102,11 @@ void print_omissions(std::span<const variant> variants) {
                          difference_text(fastest->times.back().bytes, times.back().bytes)};
     }
     print(
-        "time per frame and bytes saved by what is left out, compared with the fastest\nvariant that uses it; variants "
-        "with parameters ran for this table only\n");
+        "time per frame and bytes saved by what is left out, compared with the fastest\n"
+        "variant that uses it; those with parameters are not in the table above\n");
     print_wrapped_table(t, 0);
-    print(wrapped("-: no variant that ran used it; split_large divides only large objects. Below 0: the variant takes "
-                  "less. ?: undecided, as above.") +
+    print(wrapped("-: no variant that ran used it (split_large divides nothing if no object is large). Below 0: the "
+                  "variant takes less. ?: undecided, as above.") +
           "\n");
 }
 

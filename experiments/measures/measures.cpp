@@ -191,7 +191,7 @@ table measures_table(const scene_measures& m) {
     table measured = empty_table({"measured", ""});
     const auto add = [&](const char* name, const std::string& value) { measured.rows.push_back({name, value}); };
     add("objects", grouped(m.objects));
-    add("frames", m.frames > frames_measured ? fmt::format("{}; sizes and pairs: frame 0; motion: frames 0 to {}",
+    add("frames", m.frames > frames_measured ? fmt::format("{}; sizes and pairs from frame 0, motion from 0 to {}",
                                                            grouped(m.frames), frames_measured - 1)
                                              : grouped(m.frames));
     if (m.present != m.objects) add("present", grouped(m.present) + " of them in the first frame");
@@ -202,7 +202,7 @@ table measures_table(const scene_measures& m) {
         if (m.present > 2 && o[k] > 0.999 * static_cast<double>(m.present - 1))  // boxes overlap nearly all others
             add("flat axis", std::string(1, "xyz"[k]));
     add("size ratio", (m.boxes.size_ratio ? fmt::format("{:.3g}", *m.boxes.size_ratio) : "-") +
-                          ", the longest edge over the median longest edge of a box");
+                          ", the longest of all edges over the median box's longest");
     add("pairs", fmt::format("{:.3g} overlapping pairs per object", m.pairs_per_object));
     add("clustering", fmt::format("{:.3g} times the pairs of uniformly distributed boxes", m.clustering));
     if (!m.motion) return measured;

@@ -29,7 +29,7 @@ std::string sentence_about_auto(const race_result& race) {
     const auto dropped = std::ranges::find_if(race.dropped, is_automatic);
     if (dropped == race.dropped.end()) return "";
     if (dropped->broken_off) return fmt::format("{}: {}.", dropped->name, text_of(*dropped->broken_off));
-    return fmt::format("{} was dropped after {}, which took it {:.2f} times as long as the fastest.", dropped->name,
+    return fmt::format("{} was dropped after {}: it had taken {:.2f} times as long as the fastest.", dropped->name,
                        counted(dropped->last->frames, "frame"), dropped->slowdown);
 }
 

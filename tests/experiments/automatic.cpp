@@ -146,7 +146,7 @@ TEST_CASE_METHOD(in_folder, "explain reports what it measured and selected for a
     run_well({"scene", "pile", "--n", "200", "--frames", "80", "--out", file});
     const program_result reported = run_well({"explain", file});
     for (const char* part :
-         {"objects       200\n", "frames        81; sizes and pairs: frame 0; motion: frames 0 to 3\n",
+         {"objects       200\n", "frames        81; sizes and pairs from frame 0, motion from 0 to 3\n",
           "at rest       0 % of the objects\n", "counters of all work  ",
           "prepare    neighbour_list  frames are coherent", "    plans for the next frames\n",
           "one column of all boxes, sorted and swept", " pairs of boxes, with a skin of ", "as selected", "split_large",

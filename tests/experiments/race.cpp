@@ -439,7 +439,7 @@ TEST_CASE("Advice compares auto with the winner as far as the repeats permit") {
     automatic.last->frames = 8;
     automatic.slowdown = 1.5;
     without.dropped.push_back(automatic);
-    CHECK(reported(without, "auto (= x) was dropped after 8 frames, which took it 1.50 times as long as the fastest."));
+    CHECK(reported(without, "auto (= x) was dropped after 8 frames: it had taken 1.50 times as long as the fastest."));
     without.dropped.back().broken_off = aabblab::attempt{aabblab::ending::stopped, {}, "", 2.1};
     CHECK(reported(without, "auto (= x): stopped after 2.1 s."));
 }

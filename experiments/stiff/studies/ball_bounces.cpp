@@ -105,8 +105,8 @@ stiff_study ball_bounces_study() {
             "A ball of 1 kg hits a floor at 1 m/s. The contact is a linear spring. The trajectory error is measured "
             "without a dashpot, relative to the greatest depth and speed. The restitution, 0.5, and the contact time, "
             "from touching the floor to leaving it, are measured with a dashpot, at the time step dt = 0.05/ω, with "
-            "ω = √(k/m) and k = 1e4 to 1e10 N/m, but not with symplectic_euler, whose contact may end a step late. "
-            "adaptive_dormand_prince equals dormand_prince where one step meets its tolerance",
+            "ω = √(k/m) and k = 1e4 to 1e10 N/m; symplectic_euler is left out of both, as its contact may end a step "
+            "late. adaptive_dormand_prince equals dormand_prince where one step meets its tolerance",
             "closed form of the damped oscillator: contact time π/(ω√(1-ζ²)), restitution exp(-πζ/√(1-ζ²)), with the "
             "damping ratio ζ",
             &run_ball_bounces,
