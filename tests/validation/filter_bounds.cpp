@@ -100,7 +100,7 @@ TEST_CASE("triangles whose normals overflow in float are left to the exact test"
     }
 }
 
-TEST_CASE("corners whose rounded world coordinates lie in the wrong order are ordered exactly") {
+TEST_CASE("corners whose rounded world coordinates lie in the wrong order are ordered exactly, and not apart") {
     // Found by a search: the coordinates are off by 2.6 u and -3.4 u.
     const std::array<double, 9> matrix{
         0x1.027dd9f120b27p0, 0x1.bde5c08b791f7p-1, 0x1.cb91ce361824p-1, 0, 1, 0, 0, 0, 1};
@@ -112,6 +112,11 @@ TEST_CASE("corners whose rounded world coordinates lie in the wrong order are or
     REQUIRE(signs.s()[0][0] - signs.t()[0][0] == 6 * 0x1p-53);
     CHECK(signs.exact().order(0, 3, 0) <= 0);
     CHECK(signs.order(signs.s()[0], signs.t()[0], 0) == signs.exact().order(0, 3, 0));
+
+    // As rounded, all of s lies beyond all of t along x.
+    constexpr double e = 0x1p-20;
+    const triangle3d beyond{{p, {1 + e, e, 0}, {1 + e, 0, e}}}, before{{q, {0.5, 0, 0}, {0.5, e, 0}}};
+    CHECK_FALSE(aabb::posed_orientations(poses, beyond, before).are_apart());
 }
 
 TEST_CASE("the image of a vertex is off by hardly less than its bound") {
@@ -165,6 +170,32 @@ TEST_CASE("points that coincide far from their origins are found whatever the or
             CAPTURE(i, text_of_local(c));
             const auto stage = local_of(c, aabb::instrumentation::none);
             REQUIRE(pairs_of(*stage, at_p, a, at_q, b).size() == 1);
+        }
+    }
+}
+
+TEST_CASE("a point at a corner is found at poses close to singular ones") {
+    // The corner (1, 1, 1) is mapped close to 0: the inverse, off by some 2^-23, takes the point there back to it.
+    generator g(547);
+    const aabb::mesh with_corner{{{1, 1, 1}, {-1, 0, 0.5F}, {0, -1, -1}}, {{0, 1, 2}}};
+    for (int i = 0; i < 100; ++i) {
+        pose p;
+        vec3d image{};
+        for (std::size_t row = 0; row < 3; ++row) {
+            const double x = triangle_pairs::integer(g, -1 << 26, 1 << 26) * 0x1p-26;
+            const double y = triangle_pairs::integer(g, -1 << 26, 1 << 26) * 0x1p-26;
+            const double sum = triangle_pairs::integer(g, -8, 8) * 0x1p-33;
+            p.rotation[3 * row] = x;
+            p.rotation[3 * row + 1] = y;
+            p.rotation[3 * row + 2] = sum - x - y;
+            image[static_cast<int>(row)] = sum;
+        }
+        const aabb::mesh at_image = mesh_at(image);
+        for (const aabb::composition& c : exact_local_compositions()) {
+            CAPTURE(i, text_of_local(c));
+            const auto stage = local_of(c, aabb::instrumentation::none);
+            REQUIRE(pairs_of(*stage, with_corner, p, at_image, {}).size() == 1);
+            REQUIRE(pairs_of(*stage, at_image, {}, with_corner, p).size() == 1);
         }
     }
 }
