@@ -209,8 +209,9 @@ void add_collide(const command_parser& program) {
     request.method.add_to(command, "build, tree and triangle test");
     command.flag(
         "--self [=all|no-adjacent]", &request.self,
-        "Find self-intersections of A: pairs of triangles that meet outside their shared corners and edge; all: every "
-        "pair with a common point, adjacent triangles included; no-adjacent: only pairs without a shared corner");
+        "Find self-intersections of A: pairs of triangles that meet outside their shared corners (of equal "
+        "coordinates) and edge; all: every pair with a common point, adjacent triangles included; no-adjacent: only "
+        "pairs without a shared corner");
     add_touching(command, &request.touching, "pairs");
     command.flag("--first", &request.first, "Stop at the first pair found");
     command.flag("--count", &request.count, "Count the pairs without storing them");

@@ -20,7 +20,7 @@ std::string text_of(std::string_view stage, const std::string& strategies, const
     std::string text = fmt::format("    {}{}{}\n", stage, strategies.empty() ? "" : ": ", strategies);
     for (const aabb::part_bytes& part : parts)
         text += fmt::format("      {:<34}{:>14} bytes\n",
-                            part.part == "projections" ? "set of objects, their intervals" : part.part,
+                            part.part == "projections" ? "set of objects, and lists if any" : part.part,
                             grouped(part.bytes));
     return text;
 }

@@ -148,8 +148,8 @@ suite_report run_extreme_suite(const std::filesystem::path& folder, const std::s
     write_file(folder / "extreme.csv", csv_of(rows));
     if (shown) {
         print(
-            "exact: the same pairs as the ground truth; rejected: invalid input, rejected as\n"
-            "it must be; 91 exact: all 91 are; -: not run or, as a count, none.\n"
+            "exact: the same pairs as the ground truth; rejected: invalid input, rejected by\n"
+            "AABB Lab as it must be; 91 exact: all 91 are; -: not run or, as a count, none.\n"
             "flushed_, upward_: in a thread that flushes denormals to zero or rounds upward.\n"
             "beyond_float: an engine in double that finds no pairs is exact, too.\n"
             "Classes of wrong pairs: near: moving one triangle by a millionth of the extent\n"
