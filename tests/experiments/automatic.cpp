@@ -106,7 +106,8 @@ TEST_CASE("The table of measures groups digits and shows unknown values as a das
     m.triangles = 12'345;
     std::string text;
     for (const auto& row : aabblab::measures_table(m).rows) text += row[0] + " " + row[1] + "\n";
-    for (const char* line : {"objects 1,200\n", "triangles 12,345 in the meshes\n", "size ratio -, the longest edge"})
+    for (const char* line :
+         {"objects 1,200\n", "triangles 12,345 in the meshes\n", "size ratio -, the longest of all edges"})
         CHECK(holds(text, line));
 }
 

@@ -437,7 +437,7 @@ TEST_CASE("A reproduction writes a self-contained page, every table and figure, 
         // The last two are at a line break and at the end of the file that is built into the program.
         for (const char* part :
              {"Error against run time", "A statement with its number.", "A plot.", "A table.",
-              "Each claim has its primary ratios", "ratios between two compositions, two tree builds", "never times."})
+              "Each claim has primary ratios", "ratios between two compositions, two tree builds", "never times."})
             CHECK_THAT(text, Catch::Matchers::ContainsSubstring(part));
     }
     CHECK(holds(macros, "\\aabbset{C5.setup}{scene brownian"));
