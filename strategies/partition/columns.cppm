@@ -9,7 +9,8 @@ import aabb.std;
 export namespace aabb {
 
 /// Cuts the scene into columns of equal width that run along one axis, and only then sorts, one short list per column.
-/// When to use: almost always; it sorts nothing that is not swept.
+/// When to use: almost always; it sorts nothing that is not swept. `sorted_grid` is the grid of BEPUphysics, which
+/// keeps its columns' lists between frames instead.
 ///
 /// The axis and the number of columns minimize the cost of a model of uniformly spread boxes, fitted to a sample.
 class columns_partition {

@@ -7,12 +7,11 @@ export namespace aabb {
 
 /// A kd-tree over the frame: planes at medians of the boxes' centres divide space into leaves, and each leaf that a box
 /// overlaps gets a copy of it. Planes are kept between frames; only subtrees whose boxes have moved elsewhere are
-/// rebuilt. After Serpa and Rodrigues, "Flexible use of temporal and spatial reasoning for fast and scalable CPU
-/// broad-phase collision detection using KD-trees" (Computer Graphics Forum 38, 2019), as far as the names and comments
-/// of the authors' program reveal it: it also passes boxes that straddle planes down to the leaves, but moves planes
-/// and objects in place. Here the descent of a box starts at the last node whose cell contained it, if it still does,
-/// and any sweep can run in the leaves. When to use: clusters and varying densities, which cells of one size do not
-/// fit.
+/// rebuilt. It takes from Serpa and Rodrigues, "Flexible use of temporal and spatial reasoning for fast and scalable
+/// CPU broad-phase collision detection using KD-trees" (Computer Graphics Forum 38, 2019), that planes outlive frames;
+/// theirs, which holds each box once and keeps pairs too, is `temporal_kd_tree`. Here the descent of a box starts at
+/// the last node whose cell contained it, if it still does, and any sweep can run in the leaves. When to use: clusters
+/// and varying densities, which cells of one size do not fit.
 ///
 /// A box lies left of a plane if its lower end does, and right if its upper end does not. Cells are half-open, and a
 /// pair is owned by the leaf that contains its greater lower ends.

@@ -13,6 +13,10 @@ export namespace aabb {
 /// A uniform grid of cubic cells over the bounds of the frame; each cell that a box overlaps gets a copy of it. The
 /// paper's counterexample ("no best size for all situations", section 2): the number of cells, and with it memory and
 /// time, grows with the space instead of the objects. When to use: objects of similar size, uniformly spread.
+///
+/// `std` + `uniform_grid` + `one_axis`, with two or three `axes`, is the grid with sweep and prune in its cells of
+/// Broadmark (Serpa and Rodrigues 2019, Algorithms/Grid), but that cells there hold 200 objects on average and are
+/// sorted one by one, each along the axis on which its boxes vary most.
 class uniform_grid_partition {
 public:
     static constexpr std::string_view name = "uniform_grid";
@@ -21,16 +25,23 @@ public:
     struct config {
         /// Edge of a cell in world units. auto: twice the mean longest extent, more if cells exceed four per object.
         std::optional<double> cell_size;
+        /// Number of axes that are cut. 2: those beside the first swept one, so that cells are columns.
+        std::uint32_t axes = 3;
     };
     static constexpr std::tuple parameters{
         number_parameter{"cell_size", &config::cell_size, 0.0, std::numeric_limits<double>::max(),
-                         "edge of a cell, in world units; auto: twice the mean longest extent, or more"}};
+                         "edge of a cell, in world units; auto: twice the mean longest extent, or more"},
+        integer_parameter{"axes", &config::axes, 2U, 3U, "number of axes to cut; 2: those beside the swept one"}};
 
     uniform_grid_partition() = default;
     explicit uniform_grid_partition(const config& c) : config_(c) {}
 
     /// Needs no sorted lists: cells follow from the boxes alone.
-    static axis_set axes(std::span<const box>, const membership&, axis_set) noexcept { return 0; }
+    axis_set axes(std::span<const box>, const membership&, axis_set swept) noexcept {
+        cut_ = every_axis;
+        if (config_.axes < 3) cut_ &= ~(axis_set{1} << std::countr_zero(swept));
+        return 0;
+    }
 
     /// Sets the cells: of the configured size, or twice the mean longest extent, grown to at most four per object.
     /// @throws input_error if there would be more than 2^26 cells.
@@ -94,24 +105,27 @@ private:
     /// Sets up the grid and returns its number of cells; the grid is usable only if these are at most `most_cells`.
     double set_cells(const box& world, double size) {
         double count = 1;
-        per_unit_ = std::min(1 / size, std::numeric_limits<double>::max());  // not infinity, which times 0 is NaN
-        for (int k = 0; k < 3; ++k) {
-            const double along = std::floor((double{world.max[k]} - double{world.min[k]}) * per_unit_) + 1;
+        const double per_unit = std::min(1 / size, std::numeric_limits<double>::max());  // infinity times 0 is NaN
+        for (std::size_t k = 0; k < 3; ++k) {
+            const auto axis = static_cast<int>(k);
+            per_unit_[k] = has_axis(cut_, k) ? per_unit : 0;
+            const double along = std::floor((double{world.max[axis]} - double{world.min[axis]}) * per_unit_[k]) + 1;
             count *= along;
-            cells_[static_cast<std::size_t>(k)] = static_cast<std::uint32_t>(std::min(along, most_cells));
+            cells_[k] = static_cast<std::uint32_t>(std::min(along, most_cells));
         }
         return count;
     }
 
     /// Monotone in x, rounding included, so the cell of the greater lower end of two boxes lies in the range of both.
     [[nodiscard]] std::uint32_t cell(float x, int k) const noexcept {
-        const double along = (double{x} - double{origin_[k]}) * per_unit_;
+        const double along = (double{x} - double{origin_[k]}) * per_unit_[static_cast<std::size_t>(k)];
         return std::min(static_cast<std::uint32_t>(along), cells_[static_cast<std::size_t>(k)] - 1);
     }
 
     config config_;
     vec3f origin_{};
-    double per_unit_ = 0;
+    axis_set cut_ = every_axis;
+    std::array<double, 3> per_unit_{};
     std::array<std::uint32_t, 3> cells_ = {1, 1, 1};
 };
 

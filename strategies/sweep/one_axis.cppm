@@ -7,6 +7,10 @@ export namespace aabb {
 
 /// Sweep and prune along one axis (Cohen, Lin, Manocha and Ponamgi, "I-COLLIDE", 1995, prune on three): each box is
 /// tested on the other two axes against those that begin before it ends. When to use: almost always; linear memory.
+///
+/// `insertion` + `none` + `one_axis:axis=x` is the broad phase `SWEEP_AND_PRUNE` of Nape (L. Deltour,
+/// zpp_nape/space/SweepPhase) and `SortAndSweep1D` of BEPUphysics 1 (R. Nordby): both keep a list sorted by lower ends
+/// on x by insertion sort, and test the others. Nape is planar, so that it tests y alone; it sorts a linked list.
 class one_axis_sweep {
 public:
     static constexpr std::string_view name = "one_axis";

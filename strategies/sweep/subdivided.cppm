@@ -2,16 +2,17 @@ export module aabb.sweep.subdivided;
 
 import aabb.global_search;
 import aabb.std;
+import aabb.sweep.region_grid;
 
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)  // see aabb.base:floating_point
 
 export namespace aabb {
 
 /// Incremental sweep and prune in regions: a coarse grid over two axes, whose regions have sorted lists of ends on all
-/// three axes, kept between frames as in `incremental`. After Tracy, Buss and Woods, "Efficient large-scale sweep and
-/// prune methods with AABB insertion and removal" (IEEE Virtual Reality 2009), from its abstract: it also subdivides
-/// space, and cuts lists into segments so that an insertion does not pass all other objects. Here regions are so small
-/// that each list is one such segment. When to use: many objects, if few move at a time.
+/// three axes, kept between frames as in `incremental`. One of the methods of Tracy, Buss and Woods, "Efficient
+/// large-scale sweep and prune methods with AABB insertion and removal" (IEEE Virtual Reality 2009); their other one,
+/// lists in segments, is `segmented`. Here regions are so small that an insertion passes few other objects. When to
+/// use: many objects, if few move at a time.
 ///
 /// Only regions with moved objects are processed. An object that enters a region is appended to the region's lists and
 /// sorted to its place, which finds its pairs; when it leaves one, its pairs there are tested. Once a frame has taken
@@ -71,45 +72,10 @@ private:
         bool is_touched = false;
     };
 
-    /// The range of regions that a box overlaps on the two cut axes; empty by default.
-    struct region_range {
-        std::array<std::uint16_t, 2> first{1, 1};
-        std::array<std::uint16_t, 2> last{0, 0};
+    using region_range = region_grid<2>::range;
 
-        [[nodiscard]] bool holds(std::uint32_t i, std::uint32_t j) const noexcept {
-            return first[0] <= i && i <= last[0] && first[1] <= j && j <= last[1];
-        }
-        friend bool operator==(const region_range&, const region_range&) = default;
-    };
-
-    static constexpr double most_regions = 256;  // per axis
     static constexpr double objects_per_region = 16;
     static constexpr double extents_per_region = 4;
-
-    /// Monotone in x, rounding included, so that overlapping boxes share a region. Clamped to the outermost cells.
-    [[nodiscard]] std::uint16_t cell(float x, std::size_t k) const noexcept {
-        const double along = (double{x} - origin_[k]) * per_unit_[k];
-        return static_cast<std::uint16_t>(std::clamp(along, 0.0, static_cast<double>(count_[k] - 1)));
-    }
-    /// The regions that a box overlaps, along the two axes that the grid cuts.
-    [[nodiscard]] region_range range_of(const box& b) const noexcept {
-        region_range range;
-        for (std::size_t k = 0; k < 2; ++k) {
-            range.first[k] = cell(b.min[cut_[k]], k);
-            range.last[k] = cell(b.max[cut_[k]], k);
-        }
-        return range;
-    }
-    /// @param visit gets each region of a range that is not in the range `except`
-    void for_each_region(const region_range& range, const region_range& except, auto visit) {
-        for (std::uint32_t i = range.first[0]; i <= range.last[0]; ++i)
-            for (std::uint32_t j = range.first[1]; j <= range.last[1]; ++j)
-                if (!except.holds(i, j)) visit(i * count_[1] + j);
-    }
-    [[nodiscard]] static std::uint64_t regions_in(const region_range& range) noexcept {
-        return (range.last[0] - range.first[0] + std::uint64_t{1}) *
-               (range.last[1] - range.first[1] + std::uint64_t{1});
-    }
 
     void touch(std::uint32_t r) {
         if (!regions_[r].is_touched) touched_.push_back(r);
@@ -125,7 +91,7 @@ private:
         pairs_.erase_if([&](index_pair p) { return objects.is_leaving(p.a) || objects.is_leaving(p.b); });
         for (std::uint32_t id = 0; id < ranges_.size(); ++id) {
             if (ranges_[id] == region_range{} || !objects.is_leaving(id)) continue;
-            for_each_region(ranges_[id], /*except=*/{}, [&](std::uint32_t r) { touch(r); });
+            grid_.for_each(ranges_[id], /*except=*/{}, [&](std::uint32_t r) { touch(r); });
             ranges_[id] = {};
         }
         for (const std::uint32_t r : touched_) {
@@ -143,13 +109,13 @@ private:
         for (std::uint32_t id = 0; id < boxes.size() && steps_left_ > 0; ++id) {
             if (!objects.contains(id) || (!objects.is_arrival(id) && boxes[id] == before_[id])) continue;
             moved_[id] = 1;
-            const region_range range = range_of(boxes[id]);
-            spend(regions_in(range));
+            const region_range range = grid_.range_of(boxes[id]);
+            spend(range.regions());
             if (steps_left_ == 0) return;
-            for_each_region(range, /*except=*/{}, [&](std::uint32_t r) { touch(r); });
+            grid_.for_each(range, /*except=*/{}, [&](std::uint32_t r) { touch(r); });
             if (range == ranges_[id]) continue;  // it has stayed in the regions of the last frame
-            for_each_region(ranges_[id], range, [&](std::uint32_t r) { leave_region(r, id, boxes, counters); });
-            for_each_region(range, ranges_[id], [&](std::uint32_t r) { enter_region(r, id, boxes); });
+            grid_.for_each(ranges_[id], range, [&](std::uint32_t r) { leave_region(r, id, boxes, counters); });
+            grid_.for_each(range, ranges_[id], [&](std::uint32_t r) { enter_region(r, id, boxes); });
             ranges_[id] = range;
         }
         for (const std::uint32_t r : touched_) {
@@ -201,11 +167,11 @@ private:
         }
         touched_.clear();
         pairs_.clear();
-        regions_.resize(std::size_t{count_[0]} * count_[1]);
+        regions_.resize(grid_.regions());
         for (std::uint32_t id = 0; id < boxes.size(); ++id) {
             if (!objects.contains(id)) continue;
-            ranges_[id] = range_of(boxes[id]);
-            for_each_region(ranges_[id], /*except=*/{}, [&](std::uint32_t r) { enter_region(r, id, boxes); });
+            ranges_[id] = grid_.range_of(boxes[id]);
+            grid_.for_each(ranges_[id], /*except=*/{}, [&](std::uint32_t r) { enter_region(r, id, boxes); });
         }
         std::uint64_t tests = 0;
         restart_steps_ = 1;
@@ -230,27 +196,21 @@ private:
         for (int k = 1; k >= 0; --k)
             if (along.variance[k] < along.variance[least]) least = k;
         cut_ = {least == 0 ? 1 : 0, least == 2 ? 1 : 2};
-        box world = empty_box();
-        for (std::uint32_t id = 0; id < boxes.size(); ++id)
-            if (objects.contains(id)) world = merged(world, boxes[id]);
+        const box world = bounds_of_present(boxes, objects);
         const double by_objects = std::sqrt(static_cast<double>(planned_) / objects_per_region);
+        std::array<double, 2> wanted{};
         for (std::size_t k = 0; k < 2; ++k) {
             const double side = double{world.max[cut_[k]]} - double{world.min[cut_[k]]};
             const double by_extent = side / (extents_per_region * along.extent[cut_[k]]);
-            const double count = config_.regions ? static_cast<double>(*config_.regions)
-                                                 : std::min({by_objects, by_extent, most_regions});
-            count_[k] = side > 0 && count > 1 ? static_cast<std::uint32_t>(count) : 1;
-            origin_[k] = world.min[cut_[k]];
-            per_unit_[k] = count_[k] > 1 ? count_[k] / side : 0;
+            wanted[k] = config_.regions ? static_cast<double>(*config_.regions) : std::min(by_objects, by_extent);
         }
+        grid_.plan(world, cut_, wanted);
     }
 
     config config_;
     std::size_t planned_ = 0;  // number of present objects when the grid was planned
     std::array<int, 2> cut_{0, 1};
-    std::array<std::uint32_t, 2> count_{1, 1};
-    std::array<double, 2> origin_{};
-    std::array<double, 2> per_unit_{};
+    region_grid<2> grid_;
     std::vector<region> regions_;
     std::vector<std::uint32_t> touched_;  // regions with objects that moved in this frame
     std::vector<region_range> ranges_;    // by id

@@ -219,7 +219,10 @@ TEST_CASE("too many copies are counted and rejected, and the search stays usable
                      "object) are allowed; fewer cuts make fewer copies"},
           std::tuple{"uniform_grid:cell_size=1", std::vector(200, cube(0, 60)),
                      "uniform_grid makes 45396200 copies of 200 objects, but at most 16790016 (2^24 + 64 per "
-                     "object) are allowed; fewer cuts make fewer copies"}}) {
+                     "object) are allowed; fewer cuts make fewer copies"},
+          std::tuple{"sorted_grid:cell_size=1", std::vector(200, cube(0, 400)),
+                     "sorted_grid makes 32160200 copies of 200 objects, but at most 16790016 (2^24 + 64 per object) "
+                     "are allowed; larger cells make fewer copies"}}) {
         const auto stage = search_of(composed({{strategy_kind::partition, partition}}), boxes.size());
         CHECK_REFUSED(stage->update(boxes), sentence);
         // Nothing of that size was allocated.

@@ -27,7 +27,8 @@ struct alterations {
 
 class altered_meshes final : public local_stage {
 public:
-    explicit altered_meshes(alterations changes) : changes_(std::move(changes)) {}
+    explicit altered_meshes(alterations changes, std::unique_ptr<local_stage> stage = make_mesh_engine("brute_force"))
+        : stage_(std::move(stage)), changes_(std::move(changes)) {}
     std::uint32_t add_model(const mesh& m) override { return stage_->add_model(m); }
     void all_pairs(std::uint32_t a, const pose& pose_a, std::uint32_t b, const pose& pose_b,
                    pair_list& pairs) override {
@@ -55,7 +56,7 @@ public:
     [[nodiscard]] std::vector<omission> left_out() const override { return {}; }
 
 private:
-    std::unique_ptr<local_stage> stage_ = make_mesh_engine("brute_force");
+    std::unique_ptr<local_stage> stage_;
     alterations changes_;
 };
 
