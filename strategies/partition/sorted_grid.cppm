@@ -19,10 +19,10 @@ class sorted_grid_search;
 /// (BroadPhaseSystems/SortAndSweep), which has insertion sort along x: `insertion` + `sorted_grid` + `one_axis:axis=x`.
 /// When to use: little motion across cells, since an entry that changes its cell moves half of a list.
 ///
-/// Only cells that have boxes, or had lately, exist, in a hash table, so that neither the size of the world nor its place
-/// matters. A box that enters a cell is inserted at its place by bisection, and one that leaves is searched. A pair is
-/// reported by the cell that owns its greater lower ends. `uniform_grid` distributes lists sorted over the whole scene instead, `columns`
-/// sorts its cells afresh.
+/// Only cells that have boxes, or had lately, exist, in a hash table, so that neither the size of the world nor its
+/// place matters. A box that enters a cell is inserted at its place by bisection, and one that leaves is searched. A
+/// pair is reported by the cell that owns its greater lower ends. `uniform_grid` distributes lists sorted over the
+/// whole scene instead, `columns` sorts its cells afresh.
 ///
 /// Time: O(n) per frame beside sorting and sweeping. Memory: 32 bytes per object, 8 per object, cell and swept axis,
 /// and about 100 per occupied cell.
