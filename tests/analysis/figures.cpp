@@ -70,22 +70,24 @@ struct placed_text {
 
 std::vector<placed_text> texts_of(const std::string& svg) {
     std::vector<placed_text> texts;
-    const std::regex element(R"re(<text x="([-0-9.]+)" y="([-0-9.]+)" dy="5.6" text-anchor="([a-z]+)")re"
-                             R"re(( transform="rotate\(([-0-9.]+)[^"]*")?>(.*?)</text>)re");
+    const std::regex element(R"re(<text x="([-0-9.]+)" y="([-0-9.]+)" dy="[0-9.]+"( font-size="([0-9.]+)")?)re"
+                             R"re( text-anchor="([a-z]+)"( transform="rotate\(([-0-9.]+)[^"]*")?>(.*?)</text>)re");
     for (std::sregex_iterator i(svg.begin(), svg.end(), element), end; i != end; ++i) {
-        std::string text = std::regex_replace((*i)[6].str(), std::regex("<[^>]*>"), "");
+        std::string text = std::regex_replace((*i)[8].str(), std::regex("<[^>]*>"), "");
         text = std::regex_replace(text, std::regex("&[a-z]+;"), "x");
         const auto letters = std::ranges::count_if(text, [](char c) { return (c & 0xc0) != 0x80; });
-        const double width = 16 * 0.6 * static_cast<double>(letters);
+        const double size = (*i)[4].matched ? std::stod((*i)[4]) : 16;
+        const double width = size * 0.6 * static_cast<double>(letters);
         const double x = std::stod((*i)[1]);
         const double y = std::stod((*i)[2]);
-        const double before = (*i)[3] == "start" ? 0 : (*i)[3] == "middle" ? width / 2 : width;
+        const double before = (*i)[5] == "start" ? 0 : (*i)[5] == "middle" ? width / 2 : width;
         const double behind = width - before;
-        const double turn = (*i)[5].matched ? std::stod((*i)[5]) * 3.14159265358979 / 180 : 0;
+        const double turn = (*i)[7].matched ? std::stod((*i)[7]) * 3.14159265358979 / 180 : 0;
         // The extent along the line of text; across it the text takes less than half a line.
         const auto [from_x, to_x] = std::minmax(x - before * std::cos(turn), x + behind * std::cos(turn));
         const auto [from_y, to_y] = std::minmax(y - before * std::sin(turn), y + behind * std::sin(turn));
-        texts.push_back({text, from_x, to_x, from_y - (turn == 0 ? 8 : 0), to_y + (turn == 0 ? 8 : 0)});
+        const double half = turn == 0 ? size / 2 : 0;
+        texts.push_back({text, from_x, to_x, from_y - half, to_y + half});
     }
     return texts;
 }
@@ -347,6 +349,61 @@ TEST_CASE("Bands and error bars are drawn only for quartiles that differ") {
         for (const auto& [low, high] : {std::pair(6., 4.), std::pair(not_a_number, 6.), std::pair(4., infinity)})
             CHECK(svg(style, low, high) == svg(style, 5, 5));
     }
+}
+
+TEST_CASE("Intervals of x are drawn as bars, widen the axis and are in the CSV file") {
+    const auto drawn = [](double low, double high) {
+        return figure_of({series_of("s", series_style::curve,
+                                    {{.x = 10, .y = 5, .x_low = low, .x_high = high}, {.x = 20, .y = 6}})});
+    };
+    const std::size_t parts = count_of("<path", svg_of(drawn(10, 10)));
+    CHECK(count_of("<path", svg_of(drawn(9, 12))) == parts + 1);
+    for (const auto& [low, high] : {std::pair(12., 9.), std::pair(not_a_number, 12.), std::pair(9., infinity)}) {
+        CHECK(svg_of(drawn(low, high)) == svg_of(drawn(10, 10)));
+        CHECK(csv_of(drawn(low, high)) == csv_of(drawn(10, 10)));
+    }
+    // Bars of both, but no band.
+    figure both = drawn(9, 12);
+    both.lines[0].points[0].low = 4;
+    CHECK(count_of("fill-opacity", svg_of(both)) == 0);
+    CHECK(svg_of(both) != svg_of(drawn(9, 12)));
+    // The bar ends inside the plot.
+    const std::string wide = svg_of(drawn(1, 500));
+    CHECK_THAT(wide, ContainsSubstring(">500</text>"));
+    CHECK(csv_of(drawn(9, 12)) == "number,x,y,low,high,series,x_low,x_high\n1,10,5,5,5,s,9,12\n1,20,6,6,6,s,20,20\n");
+}
+
+TEST_CASE("Points have labels where there is room") {
+    figure f = figure_of({series_of("s", series_style::curve, {})});
+    for (int i = 1; i <= 6; ++i)
+        f.lines[0].points.push_back(
+            {.x = static_cast<double>(i), .y = static_cast<double>(i % 2), .label = "bits=" + std::to_string(i)});
+    const std::string svg = svg_of(f);
+    require_svg(svg);
+    require_pdf(pdf_of(f));
+    require_texts_inside(svg);
+    require_texts_disjoint(svg);
+    const edges plot = plot_of(svg);
+    double previous = 0;
+    for (int i = 1; i <= 6; ++i) {
+        const placed_text label = text_in(svg, "bits=" + std::to_string(i));
+        CHECK(label.left >= plot.left);
+        CHECK(label.right <= plot.right);
+        CHECK(label.top >= plot.top);
+        CHECK(label.bottom <= plot.bottom);
+        CHECK(label.left > previous);  // each at its own point
+        previous = label.left;
+    }
+    CHECK(csv_of(f).starts_with("number,x,y,low,high,series,label\n1,1,1,1,1,s,bits=1\n"));
+    // In a crowd those that fit stay apart, and the CSV file has all.
+    figure crowd = f;
+    for (int i = 0; i < 60; ++i)
+        crowd.lines[0].points.push_back(
+            {.x = 3 + i * 0.001, .y = 0.5 + i * 0.001, .label = "crowded " + std::to_string(i)});
+    const std::string crowded = svg_of(crowd);
+    require_texts_disjoint(crowded);
+    CHECK_BETWEEN(1, count_of(">crowded ", crowded), 30);
+    CHECK(count_of(",crowded ", csv_of(crowd)) == 60);
 }
 
 TEST_CASE("Ten series are distinguishable in black and white") {

@@ -111,6 +111,15 @@ struct legend {
     [[nodiscard]] double height() const { return rows == 0 ? 0 : legend_row * static_cast<double>(rows) + gap; }
 };
 
+/// The extent of a text in a plot.
+struct text_box {
+    double left, right, bottom, top;
+
+    [[nodiscard]] bool overlaps(const text_box& other) const {
+        return left < other.right && other.left < right && bottom < other.top && other.bottom < top;
+    }
+};
+
 /// The text beside the vertical line of a mark, like a flag at its pole; `begin` and `end` are its horizontal extent.
 struct flag {
     double line_x, begin, end;
@@ -177,6 +186,7 @@ public:
             add_plot(i, bottom + from_below * (row + row_gap), marks, flags[i]);
         }
         add_y_label((bottom + layout_.plots.front().top) / 2);
+        for (std::size_t i = 0; i < panel_count_; ++i) add_point_labels(i);
         add_ends(ends, bottom);
         add_legend(labels, labels.is_in_cell ? bottom + plot_height_ - labels.height() : gap / 2);
         return std::move(layout_);
@@ -431,6 +441,45 @@ private:
                 add({f.line_x + gap / 2, height}, shown.marks[i].label);
             else
                 add({f.line_x - gap / 2, height}, shown.marks[i].label, words::anchor::right);
+        }
+    }
+
+    /// Adds the labels of a panel's points, each at the first of eight places around its point that lies in the plot
+    /// and covers neither another label nor any point. A label without such a place is left out.
+    void add_point_labels(std::size_t panel) {
+        constexpr double size = 0.75;
+        constexpr double sign = 0.4;  // half the extent of a point's sign
+        constexpr double half_height = size * line_height / 2;
+        const arrangement::box& plot = layout_.plots[panel];
+        std::vector<const figure_point*> labelled;
+        std::vector<text_box> taken;
+        const auto place_of = [&](const figure_point& p) {
+            return place{plot.left + drawing_.x.place(p.x) * (plot.right - plot.left),
+                         plot.bottom + drawing_.y.place(p.y) * (plot.top - plot.bottom)};
+        };
+        for (const shown_series& s : drawing_.panels[panel].lines)
+            for (const figure_point& p : s.points) {
+                if (s.is(series_style::level)) continue;
+                if (!p.label.empty()) labelled.push_back(&p);
+                const auto [x, y] = place_of(p);
+                taken.push_back({x - sign, x + sign, y - sign, y + sign});
+            }
+        for (const figure_point* p : labelled) {
+            const auto [x, y] = place_of(*p);
+            const double width = size * width_of(p->label);
+            for (const auto& [right, up] :
+                 {std::pair{1, 1}, {1, 0}, {1, -1}, {0, 1}, {0, -1}, {-1, 1}, {-1, 0}, {-1, -1}}) {
+                const double middle_x = x + right * (sign + width / 2 + 0.1);
+                const double middle_y = y + up * (half_height + (right == 0 ? sign : 0.1));
+                const text_box box{middle_x - width / 2, middle_x + width / 2, middle_y - half_height,
+                                   middle_y + half_height};
+                if (box.left < plot.left || box.right > plot.right || box.bottom < plot.bottom || box.top > plot.top ||
+                    std::ranges::any_of(taken, [&](const text_box& other) { return box.overlaps(other); }))
+                    continue;
+                layout_.texts.push_back({{middle_x, middle_y}, p->label, words::anchor::middle, {}, 0, size});
+                taken.push_back(box);
+                break;
+            }
         }
     }
 

@@ -9,12 +9,14 @@ import aabblab.figures;
 namespace aabblab {
 
 /// The points of a series that the figure's CSV file lists: all finite ones, or only the first for a level (a
-/// horizontal line across the plot, for which x does not matter). Without valid quartiles, `low` and `high` become y.
+/// horizontal line across the plot, for which x does not matter). Without valid quartiles, `low` and `high` become y;
+/// without a valid interval, `x_low` and `x_high` become x.
 [[nodiscard]] std::vector<figure_point> points_of(const series& s) {
     std::vector<figure_point> points;
     for (figure_point p : s.points) {
         if (!std::isfinite(p.y) || (s.style != series_style::level && !std::isfinite(p.x))) continue;
         if (!std::isfinite(p.low) || !std::isfinite(p.high) || !(p.low < p.high)) p.low = p.high = p.y;
+        if (!std::isfinite(p.x_low) || !std::isfinite(p.x_high) || !(p.x_low < p.x_high)) p.x_low = p.x_high = p.x;
         points.push_back(p);
         if (s.style == series_style::level) break;
     }
@@ -56,7 +58,11 @@ struct shown_series {
     bool varies;  ///< has quartiles to show
 
     [[nodiscard]] bool is(series_style style) const { return source->style == style; }
-    [[nodiscard]] bool is_joined() const { return is(series_style::line) && points.size() > 1; }
+    [[nodiscard]] bool is_joined() const {
+        return (is(series_style::line) || is(series_style::curve)) && points.size() > 1;
+    }
+    /// Whether a band shows the quartiles, not a bar at each point.
+    [[nodiscard]] bool has_band() const { return is(series_style::level) || (is(series_style::line) && is_joined()); }
 };
 
 struct shown_panel {
@@ -138,7 +144,7 @@ struct extent {
     std::vector<shown_label> labels;
     for (const shown_panel& panel : panels)
         for (const shown_series& s : panel.lines) {
-            const bool is_single_point = s.is(series_style::line) && !s.is_joined();
+            const bool is_single_point = !s.is(series_style::level) && !s.is_joined();
             const series_style style = is_single_point ? series_style::points : s.source->style;
             const auto known = std::ranges::find(labels, s.appearance, &shown_label::appearance);
             if (known == labels.end())
@@ -175,6 +181,9 @@ struct drawing {
             for (const shown_series& s : panel.lines)
                 for (const figure_point& p : s.points) {
                     if (!s.is(series_style::level)) x_values.include(p.x);
+                    if (!s.has_band())
+                        for (const double value : {p.x_low, p.x_high})
+                            if (has_place(f.x, value)) x_values.include(value);
                     for (const double value : {p.low, p.y, p.high})
                         if (has_place(f.y, value)) y_values.include(value);
                 }

@@ -5,19 +5,23 @@ import aabb.std;
 
 export namespace aabblab {
 
-/// A measured value with its quartiles, which equal the value if it does not vary. Values that are not finite are
-/// omitted, as are non-positive values on a logarithmic axis.
+/// A measured value with its quartiles or interval, which equal the value if it does not vary. Values that are not
+/// finite are omitted, as are non-positive values on a logarithmic axis.
 struct figure_point {
     double x, y;
     double low = y;
     double high = y;
+    double x_low = x;  ///< the interval of x, drawn where no band is
+    double x_high = x;
+    std::string label{};  ///< drawn beside the point if it fits there; the CSV file has all labels
 };
 
-/// The style of a series. Quartiles are drawn only if low < high.
+/// The style of a series. Quartiles and intervals are drawn only if low < high.
 enum class series_style : unsigned char {
     line,    ///< points joined in their order, with a band from quartile to quartile
     points,  ///< points with quartile bars; over names, several series are drawn side by side
     level,   ///< a horizontal line over the whole width at the first point's y, with its band; x does not matter
+    curve,   ///< points joined in their order, with bars of the intervals of x and y: both were measured
 };
 
 struct series {

@@ -108,16 +108,18 @@ std::string operators_of(const strokes& s) {
 std::string operators_of(const words& w) {
     const std::string text = encoded(w.text);
     const std::string power = encoded(w.power);
-    const double width = width_of(text) + power_size * width_of(power);
+    const double width = w.size * (width_of(text) + power_size * width_of(power));
     const double offset = w.end == words::anchor::left ? 0 : w.end == words::anchor::middle ? width / 2 : width;
     const double turn = w.angle * std::numbers::pi / 180;
-    const double x = w.at.x - offset * std::cos(turn) + baseline * std::sin(turn);
-    const double y = w.at.y - offset * std::sin(turn) - baseline * std::cos(turn);
-    std::string ops = fmt::format("BT /F {} Tf {:.4f} {:.4f} {:.4f} {:.4f} {:.2f} {:.2f} Tm {} Tj", em, std::cos(turn),
-                                  std::sin(turn), -std::sin(turn), std::cos(turn), x * em, y * em, in_brackets(text));
+    const double size = w.size * em;
+    const double x = w.at.x - offset * std::cos(turn) + baseline * w.size * std::sin(turn);
+    const double y = w.at.y - offset * std::sin(turn) - baseline * w.size * std::cos(turn);
+    std::string ops =
+        fmt::format("BT /F {} Tf {:.4f} {:.4f} {:.4f} {:.4f} {:.2f} {:.2f} Tm {} Tj", short_number(size),
+                    std::cos(turn), std::sin(turn), -std::sin(turn), std::cos(turn), x * em, y * em, in_brackets(text));
     if (!power.empty())
-        ops += fmt::format(" /F {} Tf {} Ts {} Tj 0 Ts", short_number(power_size * em), short_number(power_rise * em),
-                           in_brackets(power));
+        ops += fmt::format(" /F {} Tf {} Ts {} Tj 0 Ts", short_number(power_size * size),
+                           short_number(power_rise * size), in_brackets(power));
     return ops + " ET\n";
 }
 

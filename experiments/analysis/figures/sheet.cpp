@@ -146,6 +146,10 @@ private:
     [[nodiscard]] double low(const figure_point& p) const {
         return y(drawing_.y.logarithmic ? std::max(p.low, drawing_.y.from) : p.low);
     }
+    /// The x of the lower limit, clamped likewise.
+    [[nodiscard]] double x_low(const figure_point& p) const {
+        return x(drawing_.x.logarithmic ? std::max(p.x_low, drawing_.x.from) : p.x_low);
+    }
 
     /// The horizontal shift of a series of points, so that n series are side by side over a name: k - (n - 1)/2 steps
     /// of min(0.3, 1.4/n) h, with h half the distance of two names, so that all stay within 0.7 h.
@@ -172,13 +176,13 @@ private:
 
     /// Fills the area between the quartiles of a line, or of a level (a horizontal line across the plot).
     void draw_band(const shown_series& s) {
-        if (!s.varies) return;
+        if (!s.varies || !s.has_band()) return;
         if (s.is(series_style::level)) {
             const double bottom = low(s.points.front());
             const double top = y(s.points.front().high);
             fill({{plot_->left, bottom}, {plot_->left, top}, {plot_->right, top}, {plot_->right, bottom}},
                  s.appearance);
-        } else if (s.is_joined()) {
+        } else {
             places outline;
             for (const figure_point& p : s.points) outline.push_back({x(p.x), y(p.high)});
             for (auto p = s.points.rbegin(); p != s.points.rend(); ++p) outline.push_back({x(p->x), low(*p)});
@@ -186,14 +190,17 @@ private:
         }
     }
 
-    /// Draws a vertical bar from the lower to the upper quartile at each point of a series whose points no line joins.
+    /// Draws bars at each point of a series without a band: from the lower to the upper quartile, and across the
+    /// interval of x.
     void draw_bars(const shown_series& s) {
-        if (!s.varies || s.is(series_style::level) || s.is_joined()) return;
+        if (s.has_band()) return;
         const double shift = shift_of(s);
         std::vector<places> lines;
-        for (const figure_point& p : s.points)
+        for (const figure_point& p : s.points) {
             if (p.low < p.high) lines.push_back({{x(p.x + shift), low(p)}, {x(p.x + shift), y(p.high)}});
-        stroke_series(std::move(lines), s.appearance, /*is_dashed=*/false);
+            if (p.x_low < p.x_high) lines.push_back({{x_low(p), y(p.y)}, {x(p.x_high), y(p.y)}});
+        }
+        if (!lines.empty()) stroke_series(std::move(lines), s.appearance, /*is_dashed=*/false);
     }
 
     /// Draws a series: the line that joins its points and their signs, or a level, a horizontal line across the plot.

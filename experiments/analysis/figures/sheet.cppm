@@ -29,6 +29,7 @@ struct words {
     anchor end = anchor::left;
     std::string power{};  ///< a superscript after the text
     int angle = 0;        ///< in degrees, counter-clockwise
+    double size = 1;      ///< relative to the font size
 };
 
 inline constexpr double power_size = 0.7;  ///< relative to the font size

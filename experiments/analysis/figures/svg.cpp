@@ -37,7 +37,8 @@ struct svg_writer {
         const place at = in_pixels(w.at);
         const std::string turn = fmt::format("rotate({} {} {})", -w.angle, short_number(at.x), short_number(at.y));
         picture.text("", at, w.text,
-                     {{"dy", baseline * em},
+                     {{"dy", baseline * w.size * em},
+                      {"font-size", w.size == 1 ? "" : short_number(w.size * em)},
                       {"text-anchor", anchors[static_cast<std::size_t>(w.end)]},
                       {"transform", w.angle == 0 ? "" : turn}},
                      w.power.empty() ? "" : svg_power(w.power, power_rise * em, power_size * em));
