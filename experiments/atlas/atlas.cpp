@@ -11,7 +11,15 @@ namespace {
 /// The name of an engine, or the strategies of a composition other than `none`.
 std::string label_of(candidate_name name) {
     std::ranges::replace(name.choices.all, "none", "");
-    return name.engine.empty() ? text_in_line(name.choices) : name.engine;
+    return name.engine.empty() ? aabblab::label_of(name.choices) : name.engine;
+}
+
+/// The scene with the defaults of its run in place of today's.
+scene_choice completed(scene_choice scene, const scene_defaults& defaults) {
+    for (const aabb::setting& s : defaults.parameters)
+        if (std::ranges::find(scene.settings, s.name, &aabb::setting::name) == scene.settings.end())
+            scene.settings.push_back(s);
+    return scene;
 }
 
 }  // namespace
@@ -36,8 +44,9 @@ double atlas_scene::least_ms(atlas_time time) const {
 }
 
 double atlas_scene::number(std::string_view parameter) const {
-    const auto set = std::ranges::find(scene.settings, parameter, &aabb::setting::name);
-    if (set != scene.settings.end()) return number_or_nan(set->value);
+    const std::vector<aabb::setting> settings = completed(scene, defaults).settings;
+    const auto set = std::ranges::find(settings, parameter, &aabb::setting::name);
+    if (set != settings.end()) return number_or_nan(set->value);
     const std::vector<aabb::parameter_info>& parameters = scene_named(scene.kind).parameters;
     const auto info = std::ranges::find(parameters, parameter, &aabb::parameter_info::name);
     return info != parameters.end() ? number_or_nan(info->fallback) : std::numeric_limits<double>::quiet_NaN();
@@ -67,13 +76,18 @@ estimate log_ratio(const atlas_candidate& candidate, const atlas_candidate& base
 /// @param is_held_out whether the scenes are kept out of fits, to test fitted models
 std::vector<atlas_scene> read_atlas(const std::filesystem::path& folder, bool is_held_out) {
     std::vector<atlas_scene> atlas;
+    const std::vector<scene_defaults> defaults = read_scene_defaults(folder);
     std::map<scene_choice, std::size_t> indices;
     for (const row& r : verified_rows(folder)) {
         const std::optional<double> frame_ms = measured("frame_ms")(r);
         const std::optional<double> whole_ms = measured("whole_ms")(r);
         if (r.status != "exact" || frame_ms.value_or(0) <= 0 || whole_ms.value_or(0) <= 0) continue;
         const auto [index, is_new] = indices.emplace(r.scene, atlas.size());
-        if (is_new) atlas.push_back({r.scene, is_held_out, measure_scene(r.scene), {}});
+        if (is_new) {
+            const auto stated = std::ranges::find(defaults, r.scene.kind, &scene_defaults::kind);
+            const scene_defaults of_kind = stated != defaults.end() ? *stated : scene_defaults();
+            atlas.push_back({r.scene, is_held_out, measure_scene(completed(r.scene, of_kind)), {}, of_kind});
+        }
         std::vector<atlas_candidate>& candidates = atlas[index->second].candidates;
         const std::string label = label_of(r.name);
         auto candidate = std::ranges::find(candidates, label, &atlas_candidate::label);

@@ -36,6 +36,7 @@ struct atlas_scene {
     bool is_held_out = false;  ///< not in the map, but kept to test models that are fitted to the map
     scene_measures measures;
     std::vector<atlas_candidate> candidates;  ///< exact ones
+    scene_defaults defaults{};                ///< of its parameters when it was run; empty in older results
 
     /// Null if the scene has no such candidate.
     [[nodiscard]] const atlas_candidate* find(std::string_view label) const;

@@ -7,7 +7,6 @@ module aabblab.results;
 
 import aabb.costs;
 import aabb.digest;
-import aabb.policy;
 import aabblab.files;
 import aabblab.json;
 import aabblab.machine;
@@ -64,6 +63,31 @@ candidate_name candidate_of(const json_value& parts) {
         name[kind] = parts.text(std::string(name_of(kind))).value_or("");
     name.engine = parts.text("engine").value_or("");
     return name;
+}
+
+/// The parameters of a strategy or a kind of scene with their defaults; those without one must be set.
+json json_of(std::span<const aabb::parameter_info> parameters) {
+    json defaults = json::object();
+    for (const aabb::parameter_info& p : parameters)
+        if (!p.fallback.empty()) defaults[p.name] = p.fallback;
+    return defaults;
+}
+
+/// The defaults that completed what scenes and candidates leave out, so that another version knows what was run.
+json defaults_json(std::span<const scene_choice> scenes, std::span<const candidate_name> candidates) {
+    json of_scenes = json::object();
+    for (const scene_choice& scene : scenes)
+        if (std::ranges::count(scene_names(), scene.kind) > 0)
+            of_scenes[scene.kind] = json_of(scene_named(scene.kind).parameters);
+    json of_strategies = json::object();
+    for (const aabb::strategy_kind kind : aabb::strategy_kinds)
+        for (const candidate_name& name : candidates) {
+            const std::string strategy = name[kind].substr(0, name[kind].find(':'));
+            const auto info = std::ranges::find(aabb::strategies(kind), strategy, &aabb::strategy_info::name);
+            if (info != aabb::strategies(kind).end())
+                of_strategies[std::string(name_of(kind))][strategy] = json_of(info->parameters);
+        }
+    return {{"scenes", std::move(of_scenes)}, {"strategies", std::move(of_strategies)}};
 }
 
 json json_of(const table_seal& table) {
@@ -176,6 +200,7 @@ std::string manifest_text(const experiment_record& e, const std::string& date, c
         {"costs", costs_json()}, {"config", {{"file", e.file}, {"hash", e.hash}, {"quick", e.quick}, {"text", e.text}}},
         {"scenes", scenes},      {"notes", e.notes}};
     if (seal) {
+        manifest["defaults"] = defaults_json(e.scenes, seal->candidates);
         json& checksums = manifest["seal"] = json{{"results.csv", json_of(seal->results)}};
         if (seal->differences) checksums["differences.csv"] = json_of(*seal->differences);
         checksums["contenders"] = json::array();  // candidates; manifests keep this older name
@@ -230,6 +255,25 @@ std::pair<std::string, scene_digests> resume_manifest(const std::filesystem::pat
     for (auto& [scene, digest] : scenes_in(previous))
         if (!digest.empty()) digests[std::move(scene)] = std::move(digest);
     return {previous.content.text("date").value_or(""), digests};
+}
+
+std::vector<scene_defaults> read_scene_defaults(const std::filesystem::path& folder) {
+    std::vector<scene_defaults> defaults;
+    const std::filesystem::path file = folder / "manifest.json";
+    const parsed_manifest manifest = parse_manifest(file);
+    const std::optional<json_value> stated = manifest.content.member("defaults");
+    if (!stated) return defaults;
+    (void)stated->needed("scenes");  // rejects anything but an object with this member
+    const json& of_scenes = manifest.raw["defaults"]["scenes"];
+    for (const auto& [kind, parameters] : of_scenes.items()) {
+        scene_defaults& of_kind = defaults.emplace_back(scene_defaults{kind, {}});
+        for (const auto& [name, value] : parameters.items()) {
+            if (!value.is_string())
+                throw aabb::input_error(file.string() + ": the default of " + name + " of " + kind + " is not a text");
+            of_kind.parameters.push_back({name, value.get<std::string>()});
+        }
+    }
+    return defaults;
 }
 
 std::string build_description() {

@@ -2,6 +2,7 @@
 export module aabblab.results;
 
 import aabb.counters;
+import aabb.policy;
 import aabb.registry;
 import aabb.std;
 import aabblab.scenes;
@@ -25,6 +26,19 @@ struct candidate_name {
     [[nodiscard]] const std::string& operator[](aabb::strategy_kind kind) const { return choices[kind]; }
     friend auto operator<=>(const candidate_name&, const candidate_name&) = default;
 };
+
+/// The strategies of a row joined by " + ", without `none` of the kind prepare and `median` of build, which most
+/// compositions share. What is left out is fixed: labels of old results must not change with the program's defaults.
+[[nodiscard]] inline std::string label_of(const aabb::by_kind<std::string>& choices,
+                                          std::span<const aabb::strategy_kind> kinds = aabb::strategy_kinds) {
+    std::string label;
+    for (const aabb::strategy_kind kind : kinds) {
+        const bool is_left_out = (kind == aabb::strategy_kind::prepare && choices[kind] == "none") ||
+                                 (kind == aabb::strategy_kind::build && choices[kind] == "median");
+        if (!is_left_out && !choices[kind].empty()) label += (label.empty() ? "" : " + ") + choices[kind];
+    }
+    return label;
+}
 
 /// The parts of a stage that have a column of bytes; other parts of an engine count as `engine`. `triangles` and
 /// `vertices` belong to the scene's meshes, which compositions share and do not own.
@@ -184,6 +198,14 @@ struct manifest_summary {
 };
 /// @throws aabb::input_error if it is not a manifest.
 [[nodiscard]] manifest_summary read_manifest(const std::filesystem::path& folder);
+
+/// The defaults of the parameters of a kind of scene with which a finished run completed its config.
+struct scene_defaults {
+    std::string kind;
+    std::vector<aabb::setting> parameters;
+};
+/// Those of all its kinds of scenes; empty in results of earlier versions.
+[[nodiscard]] std::vector<scene_defaults> read_scene_defaults(const std::filesystem::path& folder);
 
 /// The build and machine in the format of a manifest: times of different ones must not be mixed.
 [[nodiscard]] std::string build_description();

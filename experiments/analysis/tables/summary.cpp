@@ -118,7 +118,7 @@ void set_labels(scene_summary& scene) {
     }
     for (candidate_summary& summary : scene.candidates) {
         const candidate_name& name = summary.name;
-        summary.label = name.engine.empty() ? text_in_line(name.choices, scene.differing) : name.engine;
+        summary.label = name.engine.empty() ? label_of(name.choices, scene.differing) : name.engine;
         if (summary.label.empty()) summary.label = only_name_of(name);
     }
 }
@@ -218,7 +218,7 @@ std::vector<std::string> name_cells_of(std::span<const aabb::strategy_kind> diff
 
 std::string only_name_of(const candidate_name& name) {
     constexpr std::size_t most = 32;  // beside all columns of numbers, in a line of 80
-    const std::string text = text_in_line(name.choices);
+    const std::string text = label_of(name.choices);
     return text.empty() || characters(text) > most ? "this composition" : text;
 }
 
