@@ -1,7 +1,9 @@
-# aabblab_embed(TARGET NAME.EXT): the text of that file as the constant aabblab::embedded::NAME_EXT of the header
-# NAME_EXT.hpp, for the sources of the target.
+# aabblab_embed(TARGET NAME.EXT): the text of that file, which may be in another folder, as the constant
+# aabblab::embedded::name_ext of the header name_ext.hpp, for the sources of the target.
 function(aabblab_embed target file)
-    string(MAKE_C_IDENTIFIER ${file} name)
+    cmake_path(GET file FILENAME name)
+    string(MAKE_C_IDENTIFIER ${name} name)
+    string(TOLOWER ${name} name)
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
     file(READ ${file} text)
     file(CONFIGURE OUTPUT ${name}.hpp CONTENT [=[

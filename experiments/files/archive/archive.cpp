@@ -178,8 +178,9 @@ private:
 }  // namespace
 
 void write_archive(const std::filesystem::path& archive, const std::string& top, const std::filesystem::path& folder,
-                   std::span<const std::filesystem::path> files) {
+                   std::span<const std::filesystem::path> files, const std::map<std::string, std::string>& texts) {
     writer out(archive);
+    for (const auto& [name, text] : texts) out.add(top + "/" + name, text);
     for (const std::filesystem::path& file : files)
         out.add(top + "/" + file.generic_string(), bytes_of_file(folder / file));
     out.finish();

@@ -8,9 +8,10 @@ export namespace aabblab {
 
 /// Packs files of a folder into an archive, below the folder `top`. The same files give the same bytes.
 /// @param files relative to the folder, such as "c1/results.csv"
+/// @param texts further files, by name, with their content
 /// @throws aabb::input_error if a file cannot be read or written.
 void write_archive(const std::filesystem::path& archive, const std::string& top, const std::filesystem::path& folder,
-                   std::span<const std::filesystem::path> files);
+                   std::span<const std::filesystem::path> files, const std::map<std::string, std::string>& texts = {});
 
 /// Limits on the unpacked contents, so that a small archive cannot fill the disk or take hours.
 struct archive_limits {
