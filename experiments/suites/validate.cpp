@@ -77,6 +77,22 @@ std::vector<stiff_study> chosen_studies(const std::vector<std::string>& names) {
     return chosen;
 }
 
+/// The names of studies with results in the folder that this version does not have, sorted.
+std::vector<std::string> unknown_studies(const std::filesystem::path& folder) {
+    std::vector<std::string> names;
+    if (!std::filesystem::is_directory(folder)) return names;
+    for (const auto& file : std::filesystem::directory_iterator(folder)) {
+        constexpr std::string_view ending = "_points.csv";
+        std::string name = file.path().filename().string();
+        if (!name.ends_with(ending)) continue;
+        name.resize(name.size() - ending.size());
+        if (std::ranges::find(stiff_studies(), name, &stiff_study::name) == stiff_studies().end())
+            names.push_back(std::move(name));
+    }
+    std::ranges::sort(names);
+    return names;
+}
+
 figure_axis stored_axis(const json_value& j) {
     return {j.needed("label").text(), j.needed("logarithmic").flag()};
 }
@@ -213,6 +229,11 @@ std::optional<suite_report> stored_report(const std::filesystem::path& folder) {
     suite_report report;
     for (const stiff_study& study : stiff_studies())
         if (const std::optional<stiff_result> result = read_result(folder, study)) add_study(report, study, *result);
+    for (const std::string& name : unknown_studies(folder)) {
+        const stiff_study study{name, "a study of another version, without figures", "as its rows say",
+                                /*run=*/nullptr};
+        if (const std::optional<stiff_result> result = read_result(folder, study)) add_study(report, study, *result);
+    }
     return report.tables.empty() ? std::nullopt : std::optional(report);
 }
 
