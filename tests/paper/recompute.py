@@ -3,8 +3,8 @@
 
 recompute.py REPORT [ARCHIVE]: reads results.csv of every experiment and c6/process-N.json, from the folder REPORT or from
 an archive, computes every ratio that REPORT/endpoints.csv names with its interval, decides it by the rule of
-paper/reproduce/rule.md, and compares with what endpoints.csv and verdicts.csv say. Ends with 1 where a number differs in
-its third digit or a verdict differs.
+paper/reproduce/rule.md, and compares with what endpoints.csv and verdicts.csv say; then every figure, as
+recompute_figures.py does. Ends with 1 where a number differs in its third digit, or a verdict or a figure differs.
 """
 
 import csv
@@ -16,6 +16,10 @@ import re
 import sys
 import tarfile
 import tempfile
+
+if __name__ == "__main__":
+    # The module under its own name, so that both files share one copy of its functions.
+    sys.modules["recompute"] = sys.modules["__main__"]
 
 BAND = math.log(1.05)
 ONE_SIDED = 0.025
@@ -541,6 +545,7 @@ def recompute(folder, results):
                 differs(f"{claim} {e['where']}: {direction(e)}, not {e['direction']}")
         if verdict(of_claim) != stated[claim]:
             differs(f"{claim}: {verdict(of_claim)}, not {stated[claim]}")
+    recompute_figures.check(folder, results, differs)
     print(f"{len(endpoints)} ratios of {len(claims)} claims recomputed, {differences} differences")
     return 1 if differences else 0
 
@@ -552,6 +557,8 @@ def main(report, archive=None):
         packed.extractall(folder)
         return recompute(report, Results(pathlib.Path(folder) / "reproduction"))
 
+
+import recompute_figures  # noqa: E402: it imports this file's functions
 
 if __name__ == "__main__":
     sys.exit(main(*map(pathlib.Path, sys.argv[1:])))
