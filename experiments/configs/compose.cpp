@@ -241,7 +241,9 @@ error_curve read_curve(const document& doc, const node& written) {
         });
     } else {
         unique_list<aabb::composition> list;
-        add_compositions(doc, methods, list);
+        curve.named = combinations_of(doc, methods, /*listed=*/0);
+        for (const aabb::named_strategies& named : curve.named)
+            add_composition(doc, methods.line, aabb::composition(named), list);
         curve.compositions = list.items();
     }
     const node* label = written.find("label");

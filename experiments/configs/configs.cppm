@@ -95,6 +95,7 @@ struct error_curve {
     std::string label;
     std::vector<aabb::strategy_choice> triangles;  ///< tests that run on triangle pairs
     std::vector<aabb::composition> compositions;   ///< compositions that run whole scenes
+    std::vector<aabb::named_strategies> named;     ///< what the config names of each composition
 };
 
 /// A plot of one metric of the compositions against another, by name.
@@ -117,6 +118,15 @@ struct error_study {
     std::optional<experiment> scene_experiment;  ///< runs the compositions of all curves
     std::vector<metric_plot> plots;
 };
+
+/// The curves and plots of a config of `errors`, for results of which only the config is known.
+struct study_curves {
+    std::vector<error_curve> curves;
+    std::vector<metric_plot> plots;
+};
+/// Reads these alone: no scene is generated, and no mesh needed.
+/// @throws aabb::input_error like `read_experiment`.
+[[nodiscard]] study_curves read_curves(const std::filesystem::path& file);
 
 /// @throws aabb::input_error like `read_experiment`.
 [[nodiscard]] error_study read_error_study(const std::filesystem::path& file, experiment_size size);

@@ -223,6 +223,11 @@ error_study parse_error_study(const std::string& text, const std::string& file, 
     return study;
 }
 
+study_curves read_curves(const std::filesystem::path& file) {
+    const document doc(text_of_config(file), file.string());
+    return {curves_of(doc), plots_of(doc)};
+}
+
 error_study read_error_study(const std::filesystem::path& file, experiment_size size) {
     return parse_error_study(text_of_config(file), file.string(), size);
 }

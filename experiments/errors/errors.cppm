@@ -7,6 +7,7 @@ import aabb.std;
 import aabb.validation;
 import aabblab.configs;
 import aabblab.figures;
+import aabblab.results;
 import aabblab.scenes;
 import aabblab.statistics;
 import aabblab.tables;
@@ -23,9 +24,15 @@ struct error_point {
     std::uint64_t intersecting = 0;     ///< the ground truth, by CGAL's exact predicates
     std::uint64_t false_negatives = 0;  ///< intersecting pairs that it rejects
     std::uint64_t false_positives = 0;  ///< disjoint pairs that it reports
-    quartiles ns_per_pair{};            ///< over batches; the methods alternate within each
+    quartiles ns_per_pair{};            ///< wall time over batches; the methods alternate within each
+    /// Processor time per pair: the median over batches with its 95 % interval, by a bootstrap. Results of earlier
+    /// versions have none; with fewer than four batches there is no interval.
+    std::optional<double> cpu_ns{}, cpu_ns_low{}, cpu_ns_high{};
 
     [[nodiscard]] std::uint64_t wrong() const { return false_negatives + false_positives; }
+    [[nodiscard]] double error() const { return static_cast<double>(wrong()) / static_cast<double>(count); }
+    /// Processor time per pair, or, if it was not measured, wall time.
+    [[nodiscard]] double ns() const { return cpu_ns.value_or(ns_per_pair.median); }
 };
 
 /// Runs every method on every set of pairs that it supports.
@@ -45,7 +52,8 @@ enum class pair_group : std::uint8_t { of_floats, of_doubles, of_meshes };
 /// "generated triangle pairs with float coordinates"
 [[nodiscard]] std::string_view title_of(pair_group group);
 
-/// Each method over all sets of a group: its error rates, and the mean over the sets of the time per pair.
+/// Each method in a group: the mean over its sets of the time per pair, and the error rates in the set in which it errs
+/// most. A mean of error rates over classes of hard pairs would depend on which classes there are.
 [[nodiscard]] table error_summary(std::span<const error_point> points, pair_group group);
 
 /// False negatives + false positives of each method, one column per set of the group; scenes of meshes are numbered to
@@ -54,23 +62,55 @@ enum class pair_group : std::uint8_t { of_floats, of_doubles, of_meshes };
 /// The scene of each numbered column, "scene 1: mesh_pair frames=2"; empty if the columns are not numbered.
 [[nodiscard]] std::vector<std::string> scenes_by_number(std::span<const error_point> points, pair_group group);
 
-/// Error over run time in all sets of a group, one curve per method over its parameter, on logarithmic axes. A line
-/// joins the Pareto front; methods without errors are drawn on the level 1/N.
-[[nodiscard]] figure group_figure(std::span<const error_point> points, pair_group group);
+/// Work-precision diagrams of a group (Hairer, Nørsett, Wanner, Solving Ordinary Differential Equations I, 1993, II.4):
+/// error over run time, one curve per method over its parameter, with 95 % intervals, on logarithmic axes. Real pairs
+/// have a panel per scene; of generated ones, most of which are adversarial, the error is that in the worst class. A
+/// line joins the Pareto front; methods without errors are drawn on the level 1/N. Empty if no method errs.
+[[nodiscard]] std::optional<figure> group_figure(std::span<const error_point> points, pair_group group);
 
-/// A sentence about both ends of the Pareto front of a group: the fastest method, and the one with the fewest errors.
+/// Sentences about both ends of the Pareto front of a group, the fastest method and the one with the fewest errors, and
+/// about sets in which no method errs, which have no figure.
 [[nodiscard]] std::string group_statement(std::span<const error_point> points, pair_group group);
 
-/// One figure per group, and one per set.
+/// One figure per group, and one per set in which any method errs.
 [[nodiscard]] std::vector<figure> error_figures(std::span<const error_point> points);
 
-/// The plots of a study of compositions, one per scene: one curve per method over its parameter, on logarithmic axes.
-/// @param scenes the results of their runs
-[[nodiscard]] std::vector<figure> metric_figures(const error_study& study, std::span<const scene_summary> scenes);
+/// A point of a curve, by the strategies in the rows.
+struct curve_point {
+    std::string curve;    ///< its label
+    candidate_name name;  ///< results of earlier versions know only what their config names: other kinds are empty
+    /// The number of scenes, over all seeds, in which the run has rows; unknown in results of earlier versions.
+    std::optional<std::uint64_t> scenes;
 
-/// A sentence per plot about the compositions that are best in either metric.
-[[nodiscard]] std::vector<std::string> metric_statements(const error_study& study,
-                                                         std::span<const scene_summary> scenes);
+    [[nodiscard]] bool matches(const candidate_name& row_name) const;
+    [[nodiscard]] std::string text() const;
+};
+
+/// A study of compositions as it was run. Figures and sentences are made from it and from rows alone, so that they do
+/// not depend on the defaults of the program that makes them.
+struct study_record {
+    std::string name;
+    std::vector<curve_point> points;  ///< by curve
+    std::vector<metric_plot> plots;
+};
+
+[[nodiscard]] study_record record_of(const error_study& study, std::span<const row> rows);
+/// Writes curves.csv and plots.csv.
+void write_record(const std::filesystem::path& folder, const study_record& record);
+void remove_record(const std::filesystem::path& folder);
+/// Reads these files, or, in results of earlier versions, config.toml.
+/// @throws aabb::input_error if they are missing or malformed
+[[nodiscard]] study_record read_record(const std::filesystem::path& folder);
+
+/// @throws aabb::input_error if a point of a curve has no row, or a row is on no curve, by name
+void require_rows(const study_record& record, std::span<const row> rows, const std::filesystem::path& folder);
+
+/// The plots of a study of compositions, one per scene: one curve per method over its parameter, with 95 % intervals of
+/// times, on logarithmic axes. Empty for a plot of errors if nothing in the scene errs.
+[[nodiscard]] std::vector<figure> metric_figures(const study_record& record, std::span<const row> rows);
+
+/// A sentence per plot about the compositions that are best in either metric, or that none has errors.
+[[nodiscard]] std::vector<std::string> metric_statements(const study_record& record, std::span<const row> rows);
 
 /// The intersections that one test constructs for the hits of one class, compared with CGAL's exact construction.
 struct hit_point {
@@ -99,5 +139,48 @@ std::vector<hit_point> measure_hits(std::span<const pair_set> sets,
 [[nodiscard]] std::string csv_of(std::span<const hit_point> points);
 
 [[nodiscard]] table hit_summary(std::span<const hit_point> points, bool in_double);
+
+}  // namespace aabblab
+
+// Shared by the units of the module.
+namespace aabblab {
+
+/// Two numbers of a method; less is better in both.
+using cost = std::array<double, 2>;
+
+/// The Pareto front of methods with two costs, by index, ascending in the first cost: those that no other beats in one
+/// and equals or beats in the other, of equal ones only one. In that order, the second cost is a new minimum.
+[[nodiscard]] std::vector<std::size_t> front_of(std::span<const cost> methods);
+
+/// A curve's points with labels, by which the value of its parameter is read off at each point.
+/// @param choices of each point, a strategy by kind, or a triangle test
+[[nodiscard]] std::vector<std::string> knob_labels(const std::string& curve,
+                                                   std::span<const std::vector<std::string>> choices);
+
+/// Appends to a name without unsafe characters until no figure has it.
+[[nodiscard]] std::string unused_file_name(const std::string& name, std::span<const figure> figures);
+
+/// The 95 % interval of a median over measurements, all positive; empty if there are too few.
+/// @param logarithms of the measurements by process and seed
+[[nodiscard]] std::optional<interval> interval_of(const cells& logarithms);
+
+/// The points of a group, and the names of its sets in order.
+[[nodiscard]] std::vector<error_point> of_group(std::span<const error_point> points, pair_group group);
+[[nodiscard]] std::vector<std::string> sets_in(std::span<const error_point> points);
+
+/// The results of a method (a test with its parameter) in several sets of pairs.
+struct tested_method {
+    std::string curve;
+    aabb::strategy_choice triangle;
+    std::vector<error_point> sets;
+
+    /// The set in which it errs most; of equal ones the first.
+    [[nodiscard]] const error_point& worst() const { return *std::ranges::max_element(sets, {}, &error_point::error); }
+    /// The mean over the sets of the time per pair.
+    [[nodiscard]] double ns() const;
+    [[nodiscard]] cost costs() const { return {ns(), worst().error()}; }
+};
+/// One entry per method, in order of appearance.
+[[nodiscard]] std::vector<tested_method> methods_in(std::span<const error_point> points);
 
 }  // namespace aabblab

@@ -24,8 +24,8 @@ public:
     struct entry {
         Point point;
         std::unique_ptr<aabb::triangle_test> test;
-        std::size_t batches_per_run = 1;  ///< slow tests run on every n-th batch only
-        std::vector<double> ns;           ///< per pair, for each batch
+        std::size_t batches_per_run = 1;     ///< slow tests run on every n-th batch only
+        std::vector<double> ns{}, cpu_ns{};  ///< wall and processor time per pair, for each batch
     };
 
     void add(entry added) { entries_.push_back(std::move(added)); }
@@ -38,20 +38,23 @@ public:
     void run_batch(std::size_t pairs, Work work, Judge judge) {
         run_round(entries_, batches_, [&](entry& e) {
             if (batches_ % e.batches_per_run != 0) return;  // slow tests skip batches
-            const wall_stopwatch watch;
+            stopwatch watch;
             work(*e.test);
-            e.ns.push_back(watch.ms() * 1e6 / static_cast<double>(pairs));
+            const elapsed took = watch.lap();
+            e.ns.push_back(took.wall_ms * 1e6 / static_cast<double>(pairs));
+            e.cpu_ns.push_back(took.cpu_ms * 1e6 / static_cast<double>(pairs));
             judge(e.point);
         });
         ++batches_;
     }
 
-    /// Moves out the points of all tests, with the quartiles of their times per pair over batches.
-    /// @param time the member of a point that receives these quartiles
-    [[nodiscard]] std::vector<Point> points(quartiles Point::* time) {
+    /// Moves out the points of all tests.
+    /// @param set_times sets the times of a point from those of an entry that ran
+    template <class SetTimes>
+    [[nodiscard]] std::vector<Point> points(SetTimes set_times) {
         std::vector<Point> points;
         for (entry& e : entries_) {
-            if (!e.ns.empty()) e.point.*time = quartiles_of(e.ns);
+            if (!e.ns.empty()) set_times(e.point, e);
             points.push_back(std::move(e.point));
         }
         return points;
@@ -64,6 +67,26 @@ private:
 
 /// A batch of this size stays in the cache, together with its results.
 constexpr std::size_t pairs_in_batch = 4096;
+constexpr std::size_t least_batch = 512;   ///< takes much longer than reading a clock
+constexpr std::size_t fewest_batches = 8;  ///< of which the interval of a median can be given
+
+/// The size of the batches of a set: smaller ones in a small set, so that there are several.
+std::size_t batch_size(std::uint64_t pairs) {
+    return std::clamp<std::size_t>(pairs / fewest_batches, least_batch, pairs_in_batch);
+}
+
+/// The median time per pair over batches with its 95 % interval. Batches are independent, so they are repeats.
+void set_processor_time(error_point& point, const std::vector<double>& batches) {
+    cells logarithms(/*processes=*/1, /*seeds=*/1);
+    for (const double ns : batches)
+        if (ns > 0) logarithms.add(0, 0, std::log(ns));
+    if (logarithms.empty()) return;
+    point.cpu_ns = quartiles_of(batches).median;
+    if (const std::optional<interval> range = interval_of(logarithms)) {
+        point.cpu_ns_low = range->low;
+        point.cpu_ns_high = range->high;
+    }
+}
 
 class error_run {
 public:
@@ -75,13 +98,14 @@ public:
                 std::unique_ptr<aabb::triangle_test> test = triangle_test_named(choice);
                 if (in_double && !test->takes_double()) continue;
                 error_point point{.pairs = name, .in_double = in_double, .curve = curve.label, .triangle = choice};
-                methods_.add({.point = std::move(point), .test = std::move(test), .ns = {}});
+                methods_.add({.point = std::move(point), .test = std::move(test)});
             }
     }
 
     /// Times the methods on a batch, and counts their errors against the exact predicates.
+    /// @param is_new false if the batch was counted before
     template <class Real>
-    void run_batch(std::span<const aabb::triangle_pair<Real>> batch) {
+    void run_batch(std::span<const aabb::triangle_pair<Real>> batch, bool is_new = true) {
         truth_.resize(batch.size());
         for (std::size_t i = 0; i < batch.size(); ++i)
             truth_[i] =
@@ -89,10 +113,17 @@ public:
         results_.resize(batch.size());
         methods_.run_batch(
             batch.size(), [&](aabb::triangle_test& test) { test.intersect(batch, results_); },
-            [&](error_point& point) { count(point); });
+            [&](error_point& point) {
+                if (is_new) count(point);
+            });
     }
 
-    [[nodiscard]] std::vector<error_point> points() { return methods_.points(&error_point::ns_per_pair); }
+    [[nodiscard]] std::vector<error_point> points() {
+        return methods_.points([](error_point& point, const auto& times) {
+            point.ns_per_pair = quartiles_of(times.ns);
+            set_processor_time(point, times.cpu_ns);
+        });
+    }
 
 private:
     /// Adds the errors of the last test; results and truth are 1 for an intersection.
@@ -117,7 +148,7 @@ std::vector<error_point> run_pairs(const error_study& study, const pair_set& set
     pair_source<Real> source(set.pair_class, set.seed);
     std::vector<aabb::triangle_pair<Real>> batch;
     for (std::uint64_t left = set.count; left > 0; left -= batch.size()) {
-        batch.resize(std::min<std::uint64_t>(left, pairs_in_batch));
+        batch.resize(std::min<std::uint64_t>(left, batch_size(set.count)));
         source.next(batch);
         run.run_batch(std::span<const aabb::triangle_pair<Real>>(batch));
         shown.update(done += batch.size());
@@ -170,8 +201,13 @@ std::vector<error_point> run_scene(const error_study& study, const scene_choice&
     // A tree traversal yields pairs in an unpredictable order; this search yields them row by row.
     std::ranges::shuffle(pairs, std::mt19937_64(1));  // NOLINT(*-msc51-cpp): the same order in every run
     const std::span<const aabb::triangle_pair<float>> shuffled(pairs);
-    for (std::size_t begin = 0; begin < pairs.size(); begin += pairs_in_batch)
-        run.run_batch(shuffled.subspan(begin, std::min(pairs_in_batch, pairs.size() - begin)));
+    // Scenes have fewer pairs than classes: they run again until there are enough times.
+    const std::size_t size = batch_size(pairs.size());
+    const std::size_t batches = (pairs.size() + size - 1) / size;
+    constexpr std::size_t enough_batches = 3 * fewest_batches;
+    for (std::size_t round = 0; round < (enough_batches + batches - 1) / batches; ++round)
+        for (std::size_t begin = 0; begin < pairs.size(); begin += size)
+            run.run_batch(shuffled.subspan(begin, std::min(size, pairs.size() - begin)), /*is_new=*/round == 0);
     return run.points();
 }
 
@@ -199,8 +235,7 @@ public:
             const bool of_library = std::ranges::find(strategies, name) == strategies.end();
             tests_.add({.point = {.pairs = set.pair_class, .in_double = set.in_double, .triangle = name},
                         .test = triangle_test_named({name, {}}),
-                        .batches_per_run = of_library ? batches_per_library_run : 1,
-                        .ns = {}});
+                        .batches_per_run = of_library ? batches_per_library_run : 1});
         }
     }
 
@@ -226,7 +261,8 @@ public:
     }
 
     [[nodiscard]] std::vector<hit_point> points(std::uint64_t tried) {
-        std::vector<hit_point> points = tests_.points(&hit_point::ns_per_hit);
+        std::vector<hit_point> points =
+            tests_.points([](hit_point& point, const auto& times) { point.ns_per_hit = quartiles_of(times.ns); });
         for (hit_point& p : points) p.tried = tried;
         return points;
     }

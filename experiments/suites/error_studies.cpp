@@ -14,10 +14,10 @@ namespace {
 void print_tables(std::span<const error_point> points) {
     for (const pair_group group : groups_in(points)) {
         print(wrapped(group_statement(points, group)) +
-              "\n\nwrong: share of all pairs; FN: false negatives, share of intersecting pairs;\n"
-              "FP: false positives, share of disjoint pairs; fewest wrong first\n"
-              "ns/pair: the median over batches of up to 4,096 pairs, then the mean over sets\n"
-              "of pairs; a set of only one batch, as with --quick, has an unreliable time\n"
+              "\n\nwrong: share of the pairs of the set in which the method errs most, the last\n"
+              "column; FN, FP: false negatives, share of its intersecting pairs, and false\n"
+              "positives, share of its disjoint pairs; fewest wrong first\n"
+              "ns/pair: processor time, the median over batches, then the mean over sets\n"
               "aabblab list triangle and list library_tests explain names and parameters\n\n" +
               to_text(error_summary(points, group), output_width()) + "\n");
         print("By set of pairs: FN and FP, joined by +, here as shares of all pairs of the set\n");
@@ -83,14 +83,17 @@ std::vector<std::string> measure_study(const error_study& study, const std::file
     std::filesystem::create_directories(folder);
     // Remove results of an earlier study, which would not match the config of this one.
     for (const char* file : {"errors.csv", "intersections.csv"}) std::filesystem::remove(folder / file);
+    remove_record(folder);
     write_file(folder / "config.toml", study.text);
     if (study.scene_experiment) {
         failures =
             run_experiment(*study.scene_experiment, folder, existing_results::replace, "the same command", shown);
+        const std::vector<row> rows = verified_rows(folder);
+        const study_record record = record_of(study, rows);
+        write_record(folder, record);
         if (shown != printed::nothing) {
-            const std::vector<scene_summary> scenes = summarise(read_rows(folder / "results.csv"));
-            for (const std::string& text : metric_statements(study, scenes)) print(wrapped(text) + "\n\n");
-            draw(folder / "figures", metric_figures(study, scenes));
+            for (const std::string& text : metric_statements(record, rows)) print(wrapped(text) + "\n\n");
+            draw(folder / "figures", metric_figures(record, rows));
         }
     } else if (!study.curves.empty()) {
         const std::vector<error_point> points = measure_errors(

@@ -94,8 +94,48 @@ void remove_edited_test_times(const std::filesystem::path& folder) {
     }
 }
 
-/// The report's section on error against run time, of the studies that ran, on triangle pairs or whole scenes.
-report_section errors_section(const std::filesystem::path& folder, bool quick) {
+/// Adds a study of triangle tests to the report's section, from its errors.csv alone.
+void add_triangle_tests(report_section& section, const std::filesystem::path& results) {
+    const std::vector<error_point> points = read_error_rows(results / "errors.csv");
+    for (const pair_group group : groups_in(points)) {
+        section.paragraphs.push_back(group_statement(points, group));
+        if (auto f = group_figure(points, group)) section.figures.push_back(*std::move(f));
+        const std::vector<std::string> scenes = scenes_by_number(points, group);
+        std::string numbered;
+        for (const std::string& scene : scenes) numbered += " " + scene + ".";
+        section.tables.push_back(
+            {fmt::format("errors_{}", group == pair_group::of_floats    ? "float"
+                                      : group == pair_group::of_doubles ? "double"
+                                                                        : "meshes"),
+             fmt::format("In {}: processor time per pair; the share of wrong results among the pairs of the set in "
+                         "which the method errs most, and there of false negatives among intersecting pairs and of "
+                         "false positives among the others.{}",
+                         title_of(group), numbered),
+             error_summary(points, group)});
+    }
+}
+
+/// Adds a study of compositions to the report's section, from what its folder says of curves and from its rows.
+/// @throws aabb::input_error if a row is missing
+void add_compositions(report_section& section, const std::filesystem::path& results) {
+    const std::vector<row> rows = verified_rows(results);
+    const study_record record = read_record(results);
+    require_rows(record, rows, results);
+    std::vector<std::string> shown;  // metrics of the plots
+    for (const metric_plot& plot : record.plots)
+        for (const std::string& name : {plot.x, plot.y})
+            if (std::ranges::find(shown, name) == shown.end()) shown.push_back(name);
+    std::ranges::move(metric_statements(record, rows), std::back_inserter(section.paragraphs));
+    std::ranges::move(metric_figures(record, rows), std::back_inserter(section.figures));
+    const std::vector<scene_summary> scenes = summarise(rows);
+    for (const scene_summary& scene : scenes)
+        section.tables.push_back(
+            {fmt::format("{}_{}", record.name, &scene - scenes.data() + 1), heading_of(scene), table_of(scene, shown)});
+}
+
+/// The report's section on error against run time, of the studies that ran, on triangle pairs or whole scenes. It is
+/// made of the folder's files, not of the program's configs, whose methods and defaults may be others.
+report_section errors_section(const std::filesystem::path& folder) {
     report_section section{
         .id = "errors",
         .title = "Error against run time",
@@ -103,28 +143,14 @@ report_section errors_section(const std::filesystem::path& folder, bool quick) {
                        "compared with the ground truth; a method without errors is drawn at one wrong result."},
         .figures = {},
         .tables = {}};
-    for (const error_study& study : studies_with_curves(quick)) {
-        const std::filesystem::path results = folder / "errors" / study.name;
-        if (!study.scene_experiment && std::filesystem::exists(results / "errors.csv")) {
-            const std::vector<error_point> points = read_error_rows(results / "errors.csv");
-            for (const pair_group group : groups_in(points)) {
-                section.paragraphs.push_back(group_statement(points, group));
-                section.figures.push_back(group_figure(points, group));
-                section.tables.push_back(
-                    {section.figures.back().name,
-                     fmt::format("In {}: the shares of wrong results among all pairs, of false negatives among "
-                                 "intersecting pairs, and of false positives among the others.",
-                                 title_of(group)),
-                     error_summary(points, group)});
-            }
-        } else if (study.scene_experiment && std::filesystem::exists(results / "results.csv")) {
-            const std::vector<scene_summary> scenes = summarise(verified_rows(results));
-            std::ranges::copy(metric_statements(study, scenes), std::back_inserter(section.paragraphs));
-            std::ranges::copy(metric_figures(study, scenes), std::back_inserter(section.figures));
-            for (const scene_summary& scene : scenes)
-                section.tables.push_back({fmt::format("{}_{}", study.name, &scene - scenes.data() + 1),
-                                          heading_of(scene), table_of(scene, study.scene_experiment->shown)});
-        }
+    for (const std::string& name : recorded_studies(folder)) {
+        const std::filesystem::path results = folder / "errors" / name;
+        if (std::filesystem::exists(results / "errors.csv"))
+            add_triangle_tests(section, results);
+        else if (std::filesystem::exists(results / "results.csv"))
+            add_compositions(section, results);
+        else
+            section.paragraphs.push_back(fmt::format("The study {} has no results: the run was interrupted.", name));
     }
     return section;
 }
@@ -164,6 +190,18 @@ std::vector<std::string> read_failures(const std::filesystem::path& folder) {
     return failures;
 }
 
+/// Moves results of studies that this version does not have out of the run's folder, whose report shows all studies.
+void set_aside_other_studies(const std::filesystem::path& folder, std::span<const error_study> studies) {
+    for (const std::string& name : recorded_studies(folder)) {
+        if (std::ranges::find(studies, name, &error_study::name) != studies.end()) continue;
+        const std::filesystem::path aside = folder / "errors.old" / name;
+        std::filesystem::create_directories(aside.parent_path());
+        std::filesystem::remove_all(aside);
+        std::filesystem::rename(folder / "errors" / name, aside);
+        note("the study " + name + " is of another version; its results are now in " + aside.string());
+    }
+}
+
 /// Runs the paper's experiments, and the studies, suites and atlas of the report, keeping results of the same build and
 /// size. Errors are stored as soon as they are found. Only a finished run is sealed with checksums.
 void measure_reproduction(const std::filesystem::path& folder, bool quick) {
@@ -180,6 +218,7 @@ void measure_reproduction(const std::filesystem::path& folder, bool quick) {
     };
     unseal_record(folder);
     std::filesystem::remove(folder / failures_name);
+    set_aside_other_studies(folder, studies);
     for (const experiment& e : experiments) {
         note(fmt::format("experiment {} of {}: {}", &e - experiments.data() + 1, count, e.name));
         add(run_experiment(e, folder / e.name, existing_results::replace, "the same command", printed::nothing));
@@ -198,9 +237,9 @@ void measure_reproduction(const std::filesystem::path& folder, bool quick) {
 }
 
 /// The report's sections after the claims: errors against run time, extreme scenes, stiff scenes and the atlas.
-std::vector<report_section> sections_of_reproduction(const std::filesystem::path& folder, bool quick) {
+std::vector<report_section> sections_of_reproduction(const std::filesystem::path& folder) {
     std::vector<report_section> sections;
-    if (report_section errors = errors_section(folder, quick); !errors.figures.empty())
+    if (report_section errors = errors_section(folder); !recorded_studies(folder).empty())
         sections.push_back(std::move(errors));
     add_suite(sections, folder, "extreme", "Extreme scenes",
               "Beyond the paper: the scenes in which exactness is hardest, where every composition and engine is "
@@ -299,8 +338,7 @@ int judge(const std::filesystem::path& out, std::span<const measurements> runs) 
     require_different(runs);
     const reproduction reproduced = judged(runs);
     const std::string verdict_agreement = verdict_agreement_with_published(runs, reproduced);
-    write_reproduction(out, runs, reproduced, sections_of_reproduction(first.folder(), is_quick(first.folder())),
-                       failures, verdict_agreement);
+    write_reproduction(out, runs, reproduced, sections_of_reproduction(first.folder()), failures, verdict_agreement);
     print(verdict_text(reproduced));
     if (!failures.empty())
         print(fmt::format("\n{} results are wrong; compositions with wrong results have no times:\n", failures.size()));

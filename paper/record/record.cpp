@@ -29,7 +29,8 @@ std::vector<std::filesystem::path> recorded_files(const std::filesystem::path& f
     for (const std::string& name : recorded_experiments(folder))
         add(name, {"manifest.json", "results.csv", "differences.csv"});
     for (const std::string& name : names_in(folder / "errors"))
-        add("errors/" + name, {"config.toml", "errors.csv", "manifest.json", "results.csv", "differences.csv"});
+        add("errors/" + name, {"config.toml", "curves.csv", "plots.csv", "errors.csv", "manifest.json", "results.csv",
+                               "differences.csv"});
     for (const std::string& name : names_in(folder / "c6"))
         if (name.ends_with(".json") || name == "made_by.txt") add("c6", {name.c_str()});
     for (const std::string& name : names_in(folder / "atlas"))
@@ -93,6 +94,10 @@ std::vector<std::string> recorded_experiments(const std::filesystem::path& folde
             std::filesystem::is_regular_file(folder / name / "results.csv"))
             experiments.push_back(name);
     return experiments;
+}
+
+std::vector<std::string> recorded_studies(const std::filesystem::path& folder) {
+    return names_in(folder / "errors");
 }
 
 std::vector<std::filesystem::path> archived_files(const std::filesystem::path& folder) {

@@ -14,6 +14,8 @@ inline constexpr const char* archive_folder = "reproduction";
 inline constexpr const char* sums_name = "SHA256SUMS";
 
 [[nodiscard]] std::vector<std::string> recorded_experiments(const std::filesystem::path& folder);
+/// The names of the studies of error against run time, finished or not, sorted.
+[[nodiscard]] std::vector<std::string> recorded_studies(const std::filesystem::path& folder);
 
 /// The files of an archive, relative to the folder: those that a judgement reads, and SHA256SUMS if it exists.
 [[nodiscard]] std::vector<std::filesystem::path> archived_files(const std::filesystem::path& folder);

@@ -86,7 +86,12 @@ TEST_CASE_METHOD(in_folder, "errors counts the wrong results of each method repr
         "triangle = { name = \"moller\", epsilon = [\"absolute\", \"none\"] }\n");
     std::map<std::string, std::string> counts[2];
     for (auto& run : counts) {
-        CHECK(holds(run_well({"errors", config, "--out", folder / "out"}).out, "moller:epsilon=none"));
+        const std::string out = run_well({"errors", config, "--out", folder / "out"}).out;
+        CHECK(holds(out, "moller:epsilon=none"));
+        // Of the tests that take doubles, none errs.
+        std::string words = out;
+        std::erase_if(words, [](char c) { return c == ' ' || c == '\n'; });
+        CHECK(holds(words, "Nomethoderrsinrandom,lattice,small,sothatnofigureshowsit."));
         for (const auto& r : csv_rows(folder / "out/errors.csv"))
             run[r.at("pairs") + " " + r.at("precision") + " " + r.at("triangle")] =
                 r.at("count") + " " + r.at("intersecting") + " " + r.at("false_negatives") + " " +
@@ -101,7 +106,8 @@ TEST_CASE_METHOD(in_folder, "errors counts the wrong results of each method repr
     }
     // Heights of a thousandth of a unit count as zero.
     CHECK_FALSE(counts[0].at("small float moller:epsilon=absolute").ends_with(" 0"));
-    for (const char* name : {"errors_float", "errors_double", "errors_float_lattice"})
+    CHECK_FALSE(std::filesystem::exists(folder / "out/figures/errors_double.svg"));
+    for (const char* name : {"errors_float", "errors_float_small"})
         for (const char* ending : {".svg", ".csv", ".pdf"}) {
             INFO(name << ending);
             CHECK(std::filesystem::exists(folder / "out/figures" / (std::string(name) + ending)));
@@ -224,6 +230,51 @@ TEST_CASE_METHOD(in_folder, "errors runs whole compositions and plots the metric
     }
 }
 
+TEST_CASE_METHOD(in_folder, "A plot without errors has no figure, but a sentence, and absent points are named") {
+    const std::string config =
+        folder.write("e.toml",
+                     "name = \"e\"\n[[scene]]\nkind = \"mesh_pair\"\nmeshes = \"icosphere:triangles=320\"\nframes = 3\n"
+                     "[measure]\nrepeats = 5\n[[curve]]\ntree = \"canonical\"\n"
+                     "[[curve]]\nlabel = \"over bits\"\ntree = { name = \"quantized\", bits = [4, 12] }\n"
+                     "[[plot]]\nx = \"detect_cpu_ms\"\ny = \"wrong_share\"\n"
+                     "[[plot]]\nx = \"detect_cpu_ms\"\ny = \"box_inflation\"\n");
+    std::string words = run_well({"errors", config, "--out", folder / "out"}).out;
+    std::erase_if(words, [](char c) { return c == ' ' || c == '\n'; });
+    CHECK(holds(words, "wrong_shareis0forall3compositions,soithasnofigure"));
+    std::vector<aabblab::row> rows = aabblab::read_rows(folder / "out/results.csv");
+    const aabblab::study_record record = aabblab::read_record(folder / "out");
+    require_rows(record, rows, folder / "out");
+    std::vector<aabblab::figure> figures = metric_figures(record, rows);
+    REQUIRE(figures.size() == 1);
+    CHECK(figures[0].name.starts_with("box_inflation_over_detect_cpu_ms"));
+    const auto curve = std::ranges::find(figures[0].lines, "over bits", &aabblab::series::label);
+    REQUIRE(curve != figures[0].lines.end());
+    REQUIRE(curve->points.size() == 2);
+    CHECK(curve->points[0].label == "4");
+    CHECK(curve->points[1].label == "12");
+    CHECK(curve->points[0].x_low < curve->points[0].x);
+    CHECK(curve->points[0].x < curve->points[0].x_high);
+    // canonical's boxes are not larger, which a logarithmic axis shows below the others.
+    const auto canonical = std::ranges::find(figures[0].lines, "canonical", &aabblab::series::label);
+    REQUIRE(canonical != figures[0].lines.end());
+    CHECK(canonical->points.at(0).y == curve->points[1].y / 3);
+    CHECK(figures[0].lines.back().label == "zero");
+
+    // A scene without one of the compositions.
+    const std::vector<aabblab::row> complete = rows;
+    for (aabblab::row& r : rows) r.scene.settings.push_back({"distance", "2"});
+    std::erase_if(rows, [](const aabblab::row& r) { return holds(r.name[aabb::strategy_kind::tree], "bits=12"); });
+    rows.insert(rows.begin(), complete.begin(), complete.end());
+    figures = metric_figures(record, rows);
+    REQUIRE(figures.size() == 2);
+    CHECK_FALSE(holds(figures[0].caption, "Without a row"));
+    CHECK(holds(figures[1].caption, "Without a row or value here: over bits ("));
+    CHECK(holds(figures[1].caption, "quantized:bits=12"));
+    // The record says in how many scenes each ran.
+    CHECK(holds(refusal_in<aabb::input_error>([&] { require_rows(record, rows, "x"); }),
+                " in 2 scenes; curves.csv says that there are 1"));
+}
+
 TEST_CASE("a config of errors cannot mix triangle tests and compositions") {
     const std::string lists = "[[curve]]\nlabel = \"lists\"\nprepare = \"neighbour_list\"\n";
     const std::string scene = "[[scene]]\nkind = \"brownian\"\nobjects = 20\nframes = 3\n";
@@ -271,12 +322,103 @@ TEST_CASE_METHOD(in_folder, "errors in a minority of seeds show in the plot") {
     }
     // Fewer than half of the seeds have errors, so a median would be zero.
     CHECK_BETWEEN(0, wrong_seeds, 3);
-    const auto scenes = aabblab::summarise(aabblab::read_rows(folder / "out/results.csv"));
-    const auto figures = metric_figures(aabblab::read_error_study(config, experiment_size::full), scenes);
+    const std::vector<aabblab::row> rows = aabblab::read_rows(folder / "out/results.csv");
+    const auto figures =
+        metric_figures(record_of(aabblab::read_error_study(config, experiment_size::full), rows), rows);
     const auto stale = std::ranges::find(figures.at(0).lines, "stale", &aabblab::series::label);
     REQUIRE(stale != figures[0].lines.end());
     CHECK(stale->points.at(0).y > 0.5 / static_cast<double>(exact) * static_cast<double>(false_negatives));
     CHECK(figures[0].y.logarithmic);
+}
+
+TEST_CASE("The error of a method is that in its worst class, with 95 % intervals") {
+    const auto point = [](const char* pairs, const char* triangle, std::uint64_t wrong, double ns) {
+        aabblab::error_point p{.pairs = pairs, .curve = "moller", .triangle = aabb::parse_strategy(triangle)};
+        p.count = 100;
+        p.intersecting = 50;
+        p.false_negatives = wrong;
+        p.ns_per_pair = {ns, ns, ns};
+        p.cpu_ns = ns;
+        p.cpu_ns_low = 0.9 * ns;
+        p.cpu_ns_high = 1.2 * ns;
+        return p;
+    };
+    std::vector<aabblab::error_point> points{
+        point("random", "moller:epsilon=none", 0, 10), point("sliver", "moller:epsilon=none", 10, 20),
+        point("random", "moller:epsilon=scaled", 2, 30), point("sliver", "moller:epsilon=scaled", 1, 40)};
+    const auto f = group_figure(points, aabblab::pair_group::of_floats);
+    REQUIRE(f.has_value());
+    CHECK(holds(f->x.label, "processor"));
+    const auto curve = std::ranges::find(f->lines, "moller", &aabblab::series::label);
+    REQUIRE(curve != f->lines.end());
+    REQUIRE(curve->points.size() == 2);
+    const aabblab::figure_point& none = curve->points[0];
+    const auto is_near = [](double value, double expected) { return std::abs(value - expected) < 1e-4; };
+    CHECK(is_near(none.x, 15));
+    CHECK(is_near(none.y, 0.1));
+    // Wilson's interval of 10 in 100, and limits from those of two independent times: 1 and 2 below, 2 and 4 above.
+    CHECK(is_near(none.low, 0.0552));
+    CHECK(is_near(none.high, 0.1744));
+    CHECK(is_near(none.x_low, 15 - std::sqrt(1. + 4) / 2));
+    CHECK(is_near(none.x_high, 15 + std::sqrt(4. + 16) / 2));
+    CHECK(none.label == "epsilon=none");
+    CHECK(is_near(curve->points[1].y, 0.02));
+    CHECK(curve->points[1].label == "epsilon=scaled");
+    CHECK(holds(group_statement(points, aabblab::pair_group::of_floats),
+                "errs in up to 10 % of the pairs of a set (sliver)"));
+    const aabblab::table summary = error_summary(points, aabblab::pair_group::of_floats);
+    CHECK(summary.rows[0] == std::vector<std::string>{"moller:epsilon=scaled", "35.0", "0.02", "0.04", "0", "random"});
+    CHECK(summary.rows[1] == std::vector<std::string>{"moller:epsilon=none", "15.0", "0.1", "0.2", "0", "sliver"});
+
+    // Scenes have a panel each, and no interval of the error: all their pairs are tested.
+    for (aabblab::error_point& p : points) p.pairs += " frames=2";
+    points[0].false_negatives = points[2].false_negatives = 0;
+    const auto meshes = group_figure(points, aabblab::pair_group::of_meshes);
+    REQUIRE(meshes.has_value());
+    REQUIRE(meshes->panels.size() == 1);
+    CHECK(meshes->panels[0].title == "scene 2");
+    CHECK(holds(meshes->caption, "scene 2: sliver frames=2."));
+    CHECK(meshes->panels[0].lines[1].points[0].low == meshes->panels[0].lines[1].points[0].y);
+    // A set in which no method errs has no figure, and the sentence says so.
+    CHECK(holds(group_statement(points, aabblab::pair_group::of_meshes), "No method errs in random frames=2"));
+    std::erase_if(points, [](const aabblab::error_point& p) { return p.false_negatives > 0; });
+    CHECK_FALSE(group_figure(points, aabblab::pair_group::of_meshes).has_value());
+    CHECK(error_figures(points).empty());
+}
+
+TEST_CASE("Fewer iterations of GJK and MPR take less time and make errors") {
+    const auto study = aabblab::parse_error_study(
+        "name = \"e\"\n[[pairs]]\nclass = \"random\"\ncount = 20000\n"
+        "[[curve]]\ntriangle = { name = \"gjk\", iterations = [1, 3, 8] }\n"
+        "[[curve]]\ntriangle = { name = \"mpr\", tolerance = 1e-12, iterations = [3, 5, 16] }\n",
+        "e.toml", experiment_size::full);
+    const std::vector<aabblab::error_point> points = measure_errors(study);
+    REQUIRE(points.size() == 6);
+    for (const std::size_t first : {0, 3}) {
+        CHECK(points[first].wrong() > points[first + 1].wrong());
+        CHECK(points[first + 1].wrong() > points[first + 2].wrong());
+        CHECK(points[first + 2].wrong() == 0);
+        CHECK(points[first].count == 20000);
+        CHECK(points[first].cpu_ns_low < points[first].cpu_ns);
+        CHECK(points[first].cpu_ns < points[first].cpu_ns_high);
+    }
+}
+
+TEST_CASE_METHOD(in_folder, "Pairs of a scene are timed several times, and counted once") {
+    const std::string scene =
+        "name = \"e\"\n[[scene]]\nkind = \"mesh_pair\"\nmeshes = \"icosphere:triangles=320\"\nframes = 2\n";
+    const auto study =
+        aabblab::parse_error_study(scene + "[[curve]]\ntriangle = \"exact\"\n", "e.toml", experiment_size::full);
+    const std::vector<aabblab::error_point> points = measure_errors(study);
+    REQUIRE(points.size() == 1);
+    CHECK(points[0].cpu_ns_low.has_value());
+    CHECK(points[0].intersecting < points[0].count);
+    // As many as the narrow phase finds, up to the rounding of images to float.
+    run_well({"run", folder.write("run.toml", scene + "[measure]\nrepeats = 1\nmetrics = \"error\"\n"), "--out",
+              folder / "out"});
+    const auto contacts = static_cast<double>(aabblab::read_rows(folder / "out/results.csv").at(0).contacts.value());
+    CHECK(contacts > 0);
+    CHECK_BETWEEN(0.9 * contacts, static_cast<double>(points[0].intersecting), 1.1 * contacts);
 }
 
 TEST_CASE_METHOD(in_folder, "errors.csv round-trips, and a malformed one is rejected with its line") {
@@ -286,6 +428,12 @@ TEST_CASE_METHOD(in_folder, "errors.csv round-trips, and a malformed one is reje
         "e.toml", experiment_size::full);
     const std::string text = csv_of(measure_errors(study));
     CHECK(csv_of(aabblab::read_error_rows(folder.write("errors.csv", text))) == text);
+    // Earlier versions measured only wall time.
+    const std::string head_without = text.substr(0, text.find(",cpu_ns"));
+    const auto earlier = aabblab::read_error_rows(
+        folder.write("earlier.csv", head_without + "\nrandom,float,c,moller,100,9,1,0,5,4,6\n"));
+    CHECK(earlier.at(0).ns() == 5);
+    CHECK(holds(group_figure(earlier, aabblab::pair_group::of_floats)->x.label, "wall time"));
     const auto rejected = [&](const std::string& changed) {
         const std::string file = folder.write("changed.csv", changed);
         return refusal_in<aabb::input_error>([&] { return aabblab::read_error_rows(file); }).substr(file.size());
@@ -305,6 +453,18 @@ TEST_CASE("every config of errors is valid") {
         INFO(file.path());
         CHECK_NOTHROW(aabblab::read_error_study(file.path(), experiment_size::full));
     }
+    // Arms of a comparison of lists differ in the list only, and their whole time is compared.
+    const auto lists = aabblab::read_error_study(configs / "errors/neighbour_lists.toml", experiment_size::full);
+    CHECK(std::ranges::all_of(lists.plots, [](const aabblab::metric_plot& p) { return p.x == "whole_cpu_ms"; }));
+    std::vector<aabb::composition> without_list;
+    for (const aabblab::error_curve& curve : lists.curves)
+        for (const aabb::composition& c : curve.compositions)
+            if (c[aabb::strategy_kind::prepare].name == "none") without_list.push_back(c);
+    for (const aabblab::error_curve& curve : lists.curves)
+        for (aabb::composition c : curve.compositions) {
+            c[aabb::strategy_kind::prepare] = {"none", {}};
+            CHECK(std::ranges::count(without_list, c) == 1);
+        }
     // The large one has the same methods, on more than a hundred million pairs.
     const auto some = aabblab::read_error_study(configs / "errors/triangle_tests.toml", experiment_size::full);
     const auto many = aabblab::read_error_study(configs / "errors_large.toml", experiment_size::full);

@@ -2,20 +2,31 @@
 
 #include "../experiments/program.hpp"
 
+#include "studies.hpp"
 #include "worlds.hpp"
 
 import aabblab.archive;
+import aabblab.errors;
 import aabblab.record;
 
 namespace {
 
+/// The files of a report's figures and tables, by name.
+std::map<std::string, std::string> drawn_in(const std::filesystem::path& folder) {
+    std::map<std::string, std::string> files;
+    for (const char* part : {"figures", "tables"})
+        for (const auto& file : std::filesystem::directory_iterator(folder / part))
+            files[std::string(part) + "/" + file.path().filename().string()] = bytes_of_file(file.path());
+    return files;
+}
+
 /// The results of a run that is finished, as `reproduce` leaves them.
 void write_finished_run(const std::filesystem::path& folder, double ratio = 0.6) {
     worlds::write_world(folder, ratio, 0.05);
-    // The study of errors and the atlas have their own results; any experiment can stand for them.
+    write_studies(folder);
+    // The atlas has its own results; any experiment can stand for them.
     std::vector<aabblab::experiment> experiments = worlds::all_experiments(aabblab::experiment_size::quick);
     aabblab::experiment& any = *std::ranges::find(experiments, "c10", &aabblab::experiment::name);
-    worlds::write_experiment(folder / "errors", any, [](const auto&, auto&) {});
     any.name = "atlas";
     worlds::write_experiment(folder / "atlas", any, [](const auto&, auto&) {});
     // A suite leaves its rows, or, in earlier versions, its report.
@@ -23,6 +34,9 @@ void write_finished_run(const std::filesystem::path& folder, double ratio = 0.6)
     std::ofstream(folder / "stiff/plate.csv")
         << "subject,quantity,measured,expected,verdict\na shot,share,0.25,0,FAILS\n";
     std::ofstream(folder / "stiff/plate_points.csv") << "figure,line,x,y\ntunnelled,plain boxes,1,0.25\n";
+    std::ofstream(folder / "stiff/gone.csv")
+        << "subject,quantity,measured,expected,verdict\nits subject,share,0.125,0,holds\n";
+    std::ofstream(folder / "stiff/gone_points.csv") << "figure,line,x,y\n";
     std::ofstream(folder / "extreme/report.json")
         << R"({"paragraphs": ["All of it."], "failures": [], "tables": [{"name": "t", "caption": "Few",
                "columns": [{"name": "scene", "is_number": false}], "rows": [["lattice"]]}], "figures": [
@@ -62,15 +76,32 @@ TEST_CASE("An archive, and results with other line endings and another row order
     const std::string page = bytes_of_file(folder / "a/report.html");
     REQUIRE_FALSE(holds(page, "not sealed"));
     CHECK(holds(page, "Atlas of the broad phase"));
-    for (const char* part :
-         {"Stiff scenes", "a shot", "Share of shots", "Extreme scenes", "All of it.", "lattice", "Drawn"})
+    for (const char* part : {"Stiff scenes", "gone: a study of another version", "its subject", "a shot",
+                             "Share of shots", "Extreme scenes", "All of it.", "lattice", "Drawn"})
         CHECK(holds(page, part));
     CHECK(holds(bytes_of_file(folder / "a/figures/tunnelled.csv"), ",1,0.25,0.25,0.25,plain boxes\n"));
+    const auto drawn = drawn_in(folder / "a");
+    for (const std::string& name : {std::string("figures/figure1.csv"), "figures/" + lists_figure + ".csv",
+                                    std::string("figures/errors_float.svg"), std::string("tables/lists_1.csv"),
+                                    std::string("tables/errors_meshes.tex"), std::string("tables/winners.md")})
+        CHECK(drawn.contains(name));
     // Nothing was written beside the results.
     CHECK(!std::filesystem::exists(results / "report.html"));
 
+    const aabblab::unpacked_archive unpacked(archive, aabblab::archive_folder);
+    CHECK(bytes_of_file(unpacked.folder() / "LICENSE") == bytes_of_file(AABBLAB_CONFIGS "/../../LICENSE"));
+    // The description names every kind of file that is there.
+    const std::string described = bytes_of_file(unpacked.folder() / "README.md");
+    for (const std::filesystem::path& file : aabblab::archived_files(results)) {
+        CAPTURE(file);
+        const std::string name = file.filename().string();
+        const bool is_of_study = file.begin()->string() == "stiff" || name.starts_with("process-");
+        CHECK((is_of_study || name == "report.json" || holds(described, name)));
+    }
+
     run_well(judge({archive}, folder / "b", {"--archive", folder / "again.tar.xz"}));
     CHECK(bytes_of_file(folder / "b/report.html") == page);
+    CHECK(drawn_in(folder / "b") == drawn);
     CHECK(bytes_of_file(folder / "b/macros.tex") == bytes_of_file(folder / "a/macros.tex"));
     CHECK(bytes_of_file(folder / "again.tar.xz") == bytes_of_file(archive));
 
@@ -88,6 +119,70 @@ TEST_CASE("An archive, and results with other line endings and another row order
     }
     run_well(judge({results}, folder / "c"));
     CHECK(bytes_of_file(folder / "c/report.html") == page);
+    CHECK(drawn_in(folder / "c") == drawn);
+}
+
+TEST_CASE("Studies are drawn from their rows, whatever the program's defaults are") {
+    const temporary_folder folder;
+    // As if they had been run by a version with other defaults of sort, partition and sweep, or with today's.
+    const auto write = [&](const std::string& name, const std::string& others, bool as_earlier) {
+        const aabblab::error_study study =
+            aabblab::parse_error_study(lists_config(others), "lists.toml", aabblab::experiment_size::full);
+        worlds::write_world(folder / name, 0.6, 0.05);
+        std::uint64_t repeats = 0;
+        worlds::write_experiment(folder / name / "errors", *study.scene_experiment,
+                                 [&](const worlds::played& p, aabblab::row& r) {
+                                     r.first_ms = 1 + static_cast<double>(repeats++ % 7) / 10;
+                                     r.false_positives = 0;
+                                     r.false_negatives = p.has("every=4") ? 10 : p.has("every=2") ? 5 : 0;
+                                     r.candidates = 1000;
+                                 });
+        const std::filesystem::path results = folder / name / "errors/lists";
+        if (as_earlier)  // only what the user wrote, which names no sort
+            std::ofstream(results / "config.toml") << lists_config();
+        else
+            write_record(results, record_of(study, aabblab::read_rows(results / "results.csv")));
+        std::ofstream(folder / name / "failures.txt") << "";
+        aabblab::seal_record(folder / name);
+    };
+    const std::string radix = "sort = \"radix\"\npartition = \"none\"\nsweep = \"one_axis\"\n";
+    write("today", "", /*as_earlier=*/false);
+    write("other", radix, /*as_earlier=*/false);
+    write("earlier", radix, /*as_earlier=*/true);
+    std::map<std::string, std::string> points;
+    for (const char* name : {"today", "other", "earlier"}) {
+        CAPTURE(name);
+        run_well(judge({folder / name}, folder / "judged"));
+        points[name] = bytes_of_file(folder / "judged/figures" / (lists_figure + ".csv"));
+        // Five points on three curves, three or fewer on the front, and the level without errors.
+        CHECK_BETWEEN(1 + 5 + 1, std::ranges::count(points[name], '\n'), 1 + 5 + 1 + 4);
+        CHECK(holds(points[name], "over every"));
+    }
+    CHECK(points["other"] == points["today"]);
+    CHECK(points["earlier"] == points["today"]);
+
+    // What is missing is named.
+    for (const char* name : {"other", "earlier"}) {
+        CAPTURE(name);
+        const std::filesystem::path results = folder / name / "errors/lists";
+        const std::string table = bytes_of_file(results / "results.csv");
+        const std::string manifest = bytes_of_file(results / "manifest.json");
+        // The manifest without its seal, the last member.
+        std::ofstream(results / "manifest.json") << manifest.substr(0, manifest.find(",\n  \"seal\"")) << "\n}\n";
+        aabblab::seal_record(folder / name);
+        change_lines(results / "results.csv", [](std::vector<std::string>& lines) {
+            std::erase_if(lines, [](const std::string& line) { return holds(line, "margin=0.5"); });
+        });
+        CHECK(holds(run_refused(judge({folder / name}, folder / "judged")).err,
+                    "errors/lists/results.csv has no row for over margin (neighbour_list:margin=0.5"));
+        std::ofstream(results / "results.csv") << std::regex_replace(table, std::regex("margin=0.5"), "margin=0.7");
+        CHECK(holds(run_refused(judge({folder / name}, folder / "judged")).err, "has no row for over margin"));
+    }
+    const std::filesystem::path results = folder / "today/errors/lists";
+    change_lines(results / "curves.csv", [](std::vector<std::string>& lines) { lines.erase(lines.begin() + 1); });
+    aabblab::seal_record(folder / "today");
+    CHECK(holds(run_refused(judge({folder / "today"}, folder / "judged")).err,
+                "has rows of bucket + columns + simd, which is on no curve of the study"));
 }
 
 TEST_CASE_METHOD(in_folder, "Altered results are rejected in a sentence that names the file") {
@@ -124,8 +219,9 @@ TEST_CASE_METHOD(in_folder, "Altered results are rejected in a sentence that nam
     rejected("failures.txt is missing", [](const auto& results) { std::filesystem::remove(results / "failures.txt"); });
     rejected("c3/manifest.json is missing", [](const auto& results) { std::filesystem::remove_all(results / "c3"); });
     rejected("c3/results.csv is missing", [](const auto& run) { std::filesystem::remove(run / "c3/results.csv"); });
-    rejected("errors/c10/results.csv is missing",
-             [](const auto& results) { std::filesystem::remove(results / "errors/c10/results.csv"); });
+    rejected("errors/lists/results.csv is missing",
+             [](const auto& results) { std::filesystem::remove(results / "errors/lists/results.csv"); });
+    rejected("errors/lists/curves.csv was altered", of_file("errors/lists/curves.csv", "no list", "a list"));
     rejected("c6/process-3.json was added after the run", [](const auto& results) {
         std::filesystem::copy(results / "c6/process-0.json", results / "c6/process-3.json");
     });
