@@ -4,10 +4,18 @@ namespace aabblab {
 
 namespace {
 
-/// The least p-value among the outcomes that decide a claim; it stands for the claim in Holm's rule.
+/// The p-values of the two statements about the margin of a claim: that it is favoured, and that it is not.
+struct margin_test {
+    double favoured, refuted;
+};
+margin_test test_margin(expectation expected, const tails& p) {
+    return expected == expectation::less ? margin_test{p.less, p.not_less} : margin_test{p.not_more, p.more};
+}
+
+/// The lesser of both stands for the claim in Holm's rule.
 double least_p_value(const tested& t) {
-    const double direction = std::min(t.p.less, t.p.more);
-    return std::min(direction, t.expected == expectation::not_more ? t.p.not_more : t.p.same);
+    const auto [favoured, refuted] = test_margin(t.expected, t.p);
+    return std::min(favoured, refuted);
 }
 
 /// The levels of tests by Holm's step-down rule (1979) for many tests: the k-th least of n p-values is compared with
@@ -56,35 +64,26 @@ std::vector<outcome> decide_together(std::span<const evidence> family) {
 
 tails tails_of(const estimate& log_ratio, double band) {
     const double high = std::log1p(band);
-    // A zero-width interval would otherwise lie within a zero-width band.
-    const double same = band > 0 ? std::max(log_ratio.p_if_above(high), log_ratio.p_if_below(-high)) : 1;
-    return {log_ratio.p_if_above(0), log_ratio.p_if_below(0), same, log_ratio.p_if_above(high),
-            std::abs(log_ratio.value) <= high};
+    return {log_ratio.p_if_above(-high), log_ratio.p_if_below(-high), log_ratio.p_if_above(high),
+            log_ratio.p_if_below(high)};
 }
 
 outcome direction_of(const tails& p, double level) {
-    if (p.same <= level) return outcome::same;
     if (p.less <= level) return outcome::less;
     if (p.more <= level) return outcome::more;
-    return outcome::undecided;
+    return p.same() <= level ? outcome::same : outcome::undecided;
 }
 
-/// Whether measurements support a claim about a ratio.
+/// Whether measurements support a claim about a ratio. That a refuted claim of less shows no difference needs a second
+/// test, at the same level: it is only asked once the first is decided (a fixed sequence of tests).
 /// @param expected the claim: it is less than 1, or not more
 /// @param p the p-values of statements about the ratio
 /// @param level at which a statement is significant
 support support_of(expectation expected, const tails& p, double level) {
-    if (expected == expectation::not_more && p.not_more <= level) return support::favours;
-    const outcome direction = direction_of(p, level);
-    // A ratio within the equivalence band is too close to 1 to matter, even if it is significantly on one side of 1.
-    if (direction != outcome::undecided && p.is_within_band) return support::no_difference;
-    switch (direction) {
-        case outcome::less: return support::favours;
-        case outcome::same: return support::no_difference;
-        case outcome::more: return support::contradicts;
-        case outcome::undecided: break;
-    }
-    return support::undecided;
+    const auto [favoured, refuted] = test_margin(expected, p);
+    if (favoured <= level) return support::favours;
+    if (refuted > level) return support::undecided;
+    return expected == expectation::less && p.not_more <= level ? support::no_difference : support::contradicts;
 }
 
 std::vector<double> levels_together(std::span<const tested> family) {
@@ -92,10 +91,13 @@ std::vector<double> levels_together(std::span<const tested> family) {
 }
 
 /// Judges a claim by its primary endpoints; only an undecided verdict can change with more measurements.
-verdict_kind verdict_of(std::span<const support> primary) {
+verdict_kind verdict_of(std::span<const support> primary, verdict_rule rule) {
     const auto any_is = [&](support s) { return std::ranges::find(primary, s) != primary.end(); };
+    const bool any_favours = any_is(support::favours);
     const bool any_otherwise = any_is(support::contradicts) || any_is(support::no_difference);  // not as claimed
-    if (any_is(support::favours) && any_otherwise) return verdict_kind::in_part;
+    if (rule == verdict_rule::every && (any_is(support::contradicts) || (any_favours && any_otherwise)))
+        return verdict_kind::does_not_hold;
+    if (any_favours && any_otherwise) return verdict_kind::in_part;
     if (primary.empty() || any_is(support::undecided)) return verdict_kind::undecided;
     if (!any_otherwise) return verdict_kind::holds;
     // None favours the claim.

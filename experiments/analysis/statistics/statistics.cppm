@@ -127,13 +127,16 @@ struct evidence {
 
 enum class support : unsigned char { favours, no_difference, contradicts, undecided };
 
-/// One-sided p-values of the statements about a ratio: the probability of the measurement if the statement were false.
+/// One-sided p-values of the statements about where a ratio lies relative to the band: the probability of the
+/// measurement if the statement were false.
 struct tails {
-    double less;                  ///< it is below 1
-    double more;                  ///< it is above 1
-    double same;                  ///< it is within the band
-    double not_more;              ///< it is not above the band
-    bool is_within_band = false;  ///< of the ratio itself, whatever its interval
+    double less;      ///< it is below the band
+    double not_less;  ///< it is not below the band
+    double not_more;  ///< it is not above the band
+    double more;      ///< it is above the band
+
+    /// It is within the band: both one-sided tests must show it (Schuirmann 1987).
+    [[nodiscard]] double same() const { return std::max(not_less, not_more); }
 };
 /// @param log_ratio the estimate of the logarithm of a ratio
 /// @param band 0.05 for 1/1.05 to 1.05; with 0, no ratio counts as the same
@@ -142,10 +145,12 @@ struct tails {
 /// The probability in each tail of a 95 % interval.
 inline constexpr double one_sided = 0.025;
 
-/// The direction of a ratio: the same if it is significantly within the band, otherwise less or more if it is
-/// significantly on one side of 1, by however little. A ratio that may lie on either side of 1 is undecided.
+/// The region in which a ratio is shown to lie: below, within or above the band (Goeman, Solari and Stijnen 2010); its
+/// whole interval at this level lies there. An interval over an edge of the band leaves the region undecided.
 [[nodiscard]] outcome direction_of(const tails& p, double level = one_sided);
-/// The support for a claim. A ratio significantly not above the band, in any direction, favours a claim of not_more.
+/// The support for a claim, whose margin is the band's edge: a claim of less is favoured by an interval below the band,
+/// one of not more by an interval that ends below the band's upper edge. An interval beyond the margin contradicts the
+/// claim; within the band it shows no difference. An interval over the margin is undecided.
 [[nodiscard]] support support_of(expectation expected, const tails& p, double level = one_sided);
 
 /// A claim about a ratio, with the measured p-values.
@@ -154,18 +159,25 @@ struct tested {
     tails p;
 };
 /// The level at which each of several is decided by Holm's step-down rule, which keeps the probability of any wrong
-/// outcome below 5 %. It is 0 for an endpoint that cannot be decided.
+/// outcome below 5 % (for directions: Shaffer 1980). It is 0 for an endpoint that cannot be decided.
 [[nodiscard]] std::vector<double> levels_together(std::span<const tested> family);
 
 enum class verdict_kind : unsigned char { holds, in_part, no_difference, does_not_hold, undecided };
 
+/// How the primary endpoints of a claim decide it; fixed with them, before the measurements.
+enum class verdict_rule : unsigned char {
+    every,  ///< the claim speaks of all of them: one that is decided otherwise refutes it
+    cases   ///< they are the cases that the claim leaves open: it holds in part if it does in some
+};
+
 /// Judges a claim by its primary endpoints. A verdict other than undecided is one that further measurements of
 /// undecided endpoints cannot change:
-/// - holds in part, if some endpoints favour it and some are decided otherwise;
-/// - otherwise undecided, if any endpoint is, or if there are none;
 /// - holds, or no difference, if all agree;
+/// - in `cases`, holds in part, if some endpoints favour it and some are decided otherwise;
+/// - in `every`, does not hold, if any contradicts it, or shows no difference while another favours it;
+/// - otherwise undecided, if any endpoint is, or if there are none;
 /// - otherwise does not hold.
-[[nodiscard]] verdict_kind verdict_of(std::span<const support> primary);
+[[nodiscard]] verdict_kind verdict_of(std::span<const support> primary, verdict_rule rule = verdict_rule::cases);
 
 [[nodiscard]] std::string text_of(support verdict);
 [[nodiscard]] std::string text_of(verdict_kind verdict);
