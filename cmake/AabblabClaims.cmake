@@ -1,19 +1,13 @@
-# aabblab_claim(ID FILE PRIMARY number [EXPECTS not_more]): declares the claim ID of the paper, "C10", which the function
-# c10_claim() in FILE.cpp makes; several claims may have one file. So many primary endpoints decide it, which it expects
-# to be less than 1, or not more. tests/paper/recompute.py reads these lines too, so each stays on its line.
+# aabblab_claim(ID FILE): declares the claim ID, "C10", whose ratios the function c10_claim() in FILE.cpp computes; several
+# claims may have one file. paper/claims/endpoints.toml states what decides it.
 function(aabblab_claim id file)
-    cmake_parse_arguments(PARSE_ARGV 2 claim "" "PRIMARY;EXPECTS" "")
-    if(claim_UNPARSED_ARGUMENTS OR NOT claim_PRIMARY)
-        message(FATAL_ERROR "aabblab_claim(${id}) takes PRIMARY and a number, and not ${claim_UNPARSED_ARGUMENTS}.")
-    endif()
-    if(NOT claim_EXPECTS)
-        set(claim_EXPECTS less)
+    if(ARGN)
+        message(FATAL_ERROR "aabblab_claim(${id}) takes a file, and not ${ARGN}.")
     endif()
     string(TOLOWER "${id}_claim" function)
     target_sources(aabblab_claims PRIVATE ${file}.cpp)
     set_property(GLOBAL APPEND_STRING PROPERTY aabblab_claim_declarations "draft ${function}(const measurements& m);\n")
-    set_property(GLOBAL APPEND_STRING PROPERTY aabblab_claim_entries
-                 "{{\"${id}\", ${claim_PRIMARY}, expectation::${claim_EXPECTS}}, ${function}},\n")
+    set_property(GLOBAL APPEND_STRING PROPERTY aabblab_claim_entries "{\"${id}\", ${function}},\n")
 endfunction()
 
 # aabblab_claim_list(): the list of all declared claims as a generated unit of the module aabblab.claims.

@@ -4,11 +4,7 @@ namespace aabblab {
 
 /// Drafts C12: the box tests counted with the axial cut over those without it, both with Shell sort, per scene.
 draft c12_claim(const measurements& m) {
-    draft c12{.claim = {.claim = "The axial cut avoids needless tests of boxes",
-                        .measured = "box tests per frame, axial_cut over none, both with shell",
-                        .lead = "The axial cut, compared with no cut",
-                        .experiments = {"figure1", "three_lists"}},
-              .primary = {drifting}};
+    draft c12{.claim = {.lead = "The axial cut, compared with no cut", .experiments = {"figure1", "three_lists"}}};
     for (const condition& c : m.conditions_of("figure1"))
         c12.add(endpoint_of(c, improved, uncut, "box_tests"), is_brownian(c) ? "on drifting cubes" : "in other scenes",
                 /*along=*/is_brownian(c) ? "objects" : "", quantity::box_tests);

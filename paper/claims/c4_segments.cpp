@@ -20,13 +20,6 @@ std::optional<double> segments_got(const condition& c, int axes, int wanted) {
     return got ? std::optional(*got / axes) : std::nullopt;
 }
 
-/// Whether more wanted segments give more real ones, which the limit of one cut per box may prevent.
-bool is_finer(const condition& c, int axes, int wanted, int before) {
-    const auto segments = segments_got(c, axes, wanted);
-    const auto coarser = segments_got(c, axes, before);
-    return segments && coarser && *segments > 1.1 * *coarser;
-}
-
 /// The time in one scene against the requested segments per axis, a line per number of cut axes. A mark shows the
 /// number of segments that the limit of one cut per box leaves of the greatest request.
 figure figure_of(const std::string& name, const condition& c) {
@@ -54,7 +47,7 @@ figure figure_of(const std::string& name, const condition& c) {
 table automatic_table(const std::vector<condition>& conditions) {
     table t = factors_table(factors_of(conditions));
     const std::vector<std::vector<std::string>> cells_of_factors = std::exchange(t.rows, {});  // by condition
-    constexpr int beyond_limit = segments_wanted.back();  // more than the limit allows anywhere
+    constexpr int beyond_limit = segments_wanted.back();
     t.columns.insert(t.columns.end(), {{"axes"}, {"segments, auto"}, {"segments, limit"}, {"time, auto over limit"}});
     for (const condition& c : conditions)
         for (int axes = 1; axes <= 3; ++axes) {
@@ -71,65 +64,61 @@ table automatic_table(const std::vector<condition>& conditions) {
     return t;
 }
 
+/// A number of segments as a parameter, and its name among the factors.
+struct segments {
+    std::string number;
+    std::string name;
+};
+segments exactly(int number) {
+    return {std::to_string(number), std::to_string(number)};
+}
+/// The most segments with at most one cut per box, which a request for more than the limit allows anywhere yields.
+const segments the_limit{std::to_string(segments_wanted.back()), "the limit"};
+
+endpoint ratio_of(const condition& c, int axes, const segments& tested, const segments& baseline) {
+    return endpoint_of(c, cut_into(axes, tested.number), cut_into(axes, baseline.number), "frame_cpu_ms",
+                       {{"axes", std::to_string(axes)}, {"segments", tested.name}, {"over", baseline.name}});
+}
+
+std::string boxes_of(const condition& c) {
+    return "on " + number_text(value_of(c.scene(), "objects")) +
+           (is_brownian(c) ? " drifting cubes" : " cubes in clusters");
+}
+
 }  // namespace
 
-/// Drafts C4: the time of a finer cut over that of a coarser one, and of the automatic number of segments over "the
-/// limit": the most segments with at most one cut per box, which a request for more yields.
-draft c4_claim(const measurements& m) {
-    draft c4{
-        .claim = {.claim = "More segments are faster until a box spans a whole one; tiny segments are not needed",
-                  .measured = "time per frame at the limit of one cut per box over that with eight segments per axis; "
-                              "with each number of segments over that with the next smaller one, up to the limit; and "
-                              "with the automatic number over that at the limit",
-                  .experiments = {"c4"}},
-        .primary = {{{"scene", "brownian"}, {"axes", "2"}, {"segments", "the limit"}},
-                    {{"scene", "brownian"}, {"axes", "3"}, {"segments", "the limit"}},
-                    {{"scene", "brownian"}, {"axes", "2"}, {"segments", "auto"}},
-                    {{"scene", "brownian"}, {"axes", "3"}, {"segments", "auto"}}}};
+/// Drafts C4a: the time of a finer cut over that of one half as fine, up to the limit.
+draft c4a_claim(const measurements& m) {
+    draft c4a{.claim = {.lead = "Time with more segments per axis", .experiments = {"c4"}}};
     const std::vector<condition>& conditions = m.conditions_of("c4");
-    const auto for_each_cut = [&](auto add_ratios_of) {
-        for (const condition& c : conditions)
-            for (int axes = 1; axes <= 3; ++axes) add_ratios_of(c, axes);
-    };
-    /// A number of segments and its name among the factors: the number itself, or "the limit".
-    struct segments {
-        std::string number;
-        std::string name;
-    };
-    const segments limit{std::to_string(segments_wanted.back()), "the limit"};  // more than the limit allows anywhere
-    const auto ratio = [](const condition& c, int axes, const segments& finer, const segments& coarser) {
-        return endpoint_of(c, cut_into(axes, finer.number), cut_into(axes, coarser.number), "frame_cpu_ms",
-                           {{"axes", std::to_string(axes)}, {"segments", finer.name}, {"over", coarser.name}});
-    };
-    const auto boxes_of = [](const condition& c) {
-        return number_text(value_of(c.scene(), "objects")) +
-               (is_brownian(c) ? " drifting cubes" : " cubes in clusters");
-    };
-    for_each_cut([&](const condition& c, int axes) {
-        const std::string gloss = is_brownian(c) ? " (the most segments such that no box spans a whole one)" : "";
-        c4.add(ratio(c, axes, limit, {"8", "8"}),
-               boxes_of(c) + " at the limit" + gloss + ", compared with eight segments per axis", "axes");
-    });
-    for_each_cut([&](const condition& c, int axes) {
-        for (std::size_t i = 1; i < segments_wanted.size(); ++i) {
-            const std::string finer = std::to_string(segments_wanted[i]);
-            const std::string coarser = std::to_string(segments_wanted[i - 1]);
-            if (is_finer(c, axes, segments_wanted[i], segments_wanted[i - 1]))
-                c4.add(ratio(c, axes, {finer, finer}, {coarser, coarser}));
-        }
-    });
-    // Segments need not be tiny: the automatic number is as good as the most that the limit allows.
-    for_each_cut([&](const condition& c, int axes) {
-        c4.add(ratio(c, axes, {"auto", "auto"}, limit),
-               boxes_of(c) + ", automatic number of segments, compared with the limit", "axes")
-            .expected = expectation::not_more;
-    });
-    if (conditions.empty()) return c4;
-    c4.claim.tables.push_back({"c4_auto", "Segments per axis and time, with the automatic number and at the limit.",
-                               automatic_table(conditions)});
+    std::vector<std::pair<segments, segments>> steps;  // finer and coarser
+    for (const int coarser : {2, 4, 8, 16}) steps.emplace_back(exactly(2 * coarser), exactly(coarser));
+    steps.emplace_back(the_limit, exactly(32));
     for (const condition& c : conditions)
-        c4.claim.figures.push_back(figure_of(&c == conditions.data() ? "c4" : "c4_" + value_of(c.scene(), "scene"), c));
-    return c4;
+        for (int axes = 1; axes <= 3; ++axes)
+            for (const auto& [finer, coarser] : steps)
+                c4a.add(ratio_of(c, axes, finer, coarser),
+                        boxes_of(c) + ", " + finer.name + " instead of " + coarser.name, "axes");
+    for (const condition& c : conditions)
+        for (int axes = 1; axes <= 3; ++axes) c4a.add(ratio_of(c, axes, the_limit, exactly(8)));
+    for (const condition& c : conditions)
+        c4a.claim.figures.push_back(
+            figure_of(&c == conditions.data() ? "c4" : "c4_" + value_of(c.scene(), "scene"), c));
+    return c4a;
+}
+
+/// Drafts C4b: the time with the automatic number of segments over that at the limit.
+draft c4b_claim(const measurements& m) {
+    draft c4b{.claim = {.lead = "Time with the automatic number of segments, compared with the limit",
+                        .experiments = {"c4"}}};
+    const std::vector<condition>& conditions = m.conditions_of("c4");
+    for (const condition& c : conditions)
+        for (int axes = 1; axes <= 3; ++axes)
+            c4b.add(ratio_of(c, axes, {"auto", "auto"}, the_limit), boxes_of(c), "axes");
+    if (conditions.empty()) return c4b;
+    c4b.claim.tables.push_back({"c4_auto", "Segments per axis and time, with the automatic number and at the limit.",
+                                automatic_table(conditions)});
+    return c4b;
 }
 
 }  // namespace aabblab

@@ -1,3 +1,6 @@
+module;
+#include <cassert>
+
 module aabblab.claims;
 
 import aabblab.fmt;
@@ -15,7 +18,7 @@ void decide_family(std::span<endpoint* const> endpoints, double band) {
     for (std::size_t machine = 0; machine < endpoints.front()->log_ratios.size(); ++machine) {
         std::vector<tested> evidence;
         for (const endpoint* e : endpoints)
-            // `drafts_of` has set what each endpoint expects: its own expectation, or else its claim's.
+            // `mark_stated` has set what each endpoint expects.
             evidence.push_back({e->expected.value(), tails_of(e->log_ratios[machine], band)});
         const std::vector<double> levels = levels_together(evidence);  // by Holm's rule
         for (std::size_t i = 0; i < endpoints.size(); ++i) {
@@ -29,17 +32,30 @@ void decide_family(std::span<endpoint* const> endpoints, double band) {
 }
 
 std::string word_of(const endpoint& e) {
-    constexpr std::array words{"less", "no difference", "more", "not more", "undecided"};
+    constexpr std::array words{"less", "no difference", "more", "not more", "not less", "undecided"};
     return words[static_cast<std::size_t>(wording_of(e))];
 }
 
-/// The ratios behind a verdict: all primary ones, and the number of others by outcome.
-std::string evidence_text(std::span<const endpoint> primaries, std::span<const endpoint> others) {
-    if (primaries.empty()) return "There are no measurements that decide it.";
+/// How the primary ratios decide the claim.
+std::string rule_text(const claim_result& claim) {
+    return claim.rule == verdict_rule::every
+               ? "It holds if all of them favour it; one that is decided otherwise refutes it."
+               : "They are the cases of what is left open: " + claim.left_open +
+                     ". It holds in part if some favour it and others are decided otherwise.";
+}
+
+/// The ratios behind a verdict: all primary ones, also those that were not measured, and the number of others by
+/// outcome.
+std::string evidence_text(const claim_result& claim) {
+    if (claim.primaries.empty()) return "There are no measurements that decide it.";
     std::string text;
-    for (const endpoint& e : primaries)
+    for (const endpoint& e : claim.primaries)
         text += fmt::format("{}{}: {}, {}", text.empty() ? "" : "; ", text_of(e.where), ratio_text(e), word_of(e));
-    text = "Primary ratios, each with its 95 % interval: " + text + ".";
+    text = "Primary ratios, each with its 95 % interval: " + text + ". " + rule_text(claim);
+    for (const std::string& where : claim.missing)
+        text += (&where == claim.missing.data() ? " Not measured, and so undecided: " : "; ") + where;
+    if (!claim.missing.empty()) text += ".";
+    const std::vector<endpoint>& others = claim.secondaries;
     if (others.empty()) return text;
     return text + counts_text(" Of " + counted(others.size(), "other ratio"),
                               {{count_of(others, support::favours), "favours the claim", "favour the claim"},
@@ -54,21 +70,36 @@ named_table ratio_table(const claim_result& claim) {
     std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     std::vector<endpoint> ordered = claim.primaries;
     ordered.insert(ordered.end(), claim.secondaries.begin(), claim.secondaries.end());
-    table ratios = endpoint_table(
-        ordered, [](const endpoint& e) { return text_of(e.corrected) + (e.is_primary ? " (primary)" : ""); });
+    table ratios = endpoint_table(ordered, [](const endpoint& e) {
+        return text_of(e.corrected) + (e.is_primary ? " (primary)" : e.is_earlier ? " (earlier)" : "");
+    });
     const bool has_unit = std::ranges::find(ratios.columns, "unit", &column::name) != ratios.columns.end();
     return {name,
             "Every ratio of " + claim.id + ": " + claim.measured +
-                ". Outcomes are corrected by Holm's method: of primary ratios over all claims, of the "
-                "others over this claim. Intervals are uncorrected." +
+                ". Primary ratios decide, earlier ones did in previous archives. Outcomes are corrected by Holm's "
+                "method: of primary ratios over all claims, of the others over this claim. Intervals are uncorrected." +
                 (has_unit ? unit_legend : ""),
             std::move(ratios)};
+}
+
+/// Whether the endpoint is the ratio that endpoints.toml states.
+bool is_stated(const endpoint& e, const stated_ratio& ratio) {
+    return e.source == ratio.source && matches(e.where, ratio.where);
+}
+
+/// The primary ratios that endpoints.toml states and no machine, or not every one, has measured.
+std::vector<stated_ratio> missing_of(const draft& drafted, std::span<const endpoint> endpoints) {
+    std::vector<stated_ratio> missing;
+    std::ranges::remove_copy_if(drafted.stated->primary, std::back_inserter(missing), [&](const stated_ratio& ratio) {
+        return std::ranges::any_of(endpoints, [&](const endpoint& e) { return is_stated(e, ratio); });
+    });
+    return missing;
 }
 
 /// Judges a draft by its decided endpoints: verdict, sentences and tables, that of all ratios first.
 claim_result result_of(const draft& drafted, const std::vector<endpoint>& endpoints) {
     claim_result claim = drafted.claim;
-    claim.verdict = verdict_of(endpoints);
+    claim.verdict = verdict_of(drafted, endpoints);
     std::vector<endpoint> primary_clauses, secondary_clauses;
     for (const endpoint& e : endpoints) {
         // A clause of the sentence reports several endpoints; one primary endpoint makes the whole clause primary.
@@ -78,16 +109,32 @@ claim_result result_of(const draft& drafted, const std::vector<endpoint>& endpoi
     }
     claim.sentence = claim.brief = sentence_of(primary_clauses, claim.lead);
     if (!secondary_clauses.empty()) claim.sentence += " " + sentence_of(secondary_clauses, "secondary ratios");
-    std::vector<endpoint> unjudged;
-    for (const endpoint& e : drafted.unjudged)
-        if (e.is_known()) unjudged.push_back(decided_alone(e));
-    if (!unjudged.empty()) claim.sentence += " " + sentence_of(unjudged);
     if (!claim.remark.empty()) claim.sentence += " " + claim.remark;
     std::ranges::copy_if(endpoints, std::back_inserter(claim.primaries), &endpoint::is_primary);
     std::ranges::remove_copy_if(endpoints, std::back_inserter(claim.secondaries), &endpoint::is_primary);
-    claim.evidence = evidence_text(claim.primaries, claim.secondaries);
+    for (const stated_ratio& ratio : missing_of(drafted, endpoints))
+        claim.missing.push_back(ratio.source + ", on " + text_of(ratio.where));
+    claim.evidence = evidence_text(claim);
     claim.tables.insert(claim.tables.begin(), ratio_table(claim));
     return claim;
+}
+
+/// Marks the endpoints that endpoints.toml states, and sets what each expects: what is stated there, or by its claim.
+void mark_stated(draft& drafted) {
+    const stated_claim& stated = *drafted.stated;
+    for (endpoint& e : drafted.endpoints) e.expected = e.expected.value_or(stated.expected);
+    const auto mark = [&](const std::vector<stated_ratio>& ratios, bool endpoint::* role) {
+        for (const stated_ratio& ratio : ratios) {
+            const auto is_this = [&](const endpoint& e) { return is_stated(e, ratio); };
+            assert(std::ranges::count_if(drafted.endpoints, is_this) <= 1);
+            const auto e = std::ranges::find_if(drafted.endpoints, is_this);
+            if (e == drafted.endpoints.end()) continue;
+            (*e).*role = true;
+            e->expected = ratio.expected;
+        }
+    };
+    mark(stated.primary, &endpoint::is_primary);
+    mark(stated.earlier, &endpoint::is_earlier);
 }
 
 /// The drafts of all claims, which have ratios but no verdicts yet, from the results of one machine.
@@ -95,12 +142,20 @@ std::vector<draft> drafts_of(const measurements& m) {
     std::vector<draft> drafts;
     for (const claim_source& source : claim_sources()) {
         draft& added = drafts.emplace_back(source.make(m));
+        const auto entry = std::ranges::find(stated().claims, source.id, &stated_claim::id);
+        assert(entry != stated().claims.end());
+        added.stated = &*entry;
         claim_result& claim = added.claim;
-        claim.id = source.listed.id;
-        claim.expected = source.listed.expected;
-        // A ratio without an expectation of its own has that of the claim.
-        for (std::vector<endpoint>* endpoints : {&added.endpoints, &added.unjudged})
-            for (endpoint& e : *endpoints) e.expected = e.expected.value_or(claim.expected);
+        claim.id = entry->id;
+        claim.of = entry->of;
+        claim.claim = entry->claim;
+        claim.quote = entry->quote;
+        claim.regime = entry->regime;
+        claim.measured = entry->measured;
+        claim.left_open = entry->left_open;
+        claim.rule = entry->rule;
+        claim.expected = entry->expected;
+        mark_stated(added);
         for (const std::string& experiment : claim.experiments)
             std::ranges::move(factors_of(m.conditions_of(experiment)), std::back_inserter(claim.scenes));
     }
@@ -110,17 +165,13 @@ std::vector<draft> drafts_of(const measurements& m) {
 /// Adds another machine's ratios to the drafts of the first; both lists are in the order of the claims. A ratio that
 /// the other machine did not measure becomes unknown, and is left out later.
 void add_machine(std::vector<draft>& drafts, const std::vector<draft>& more) {
-    const auto add = [](std::vector<endpoint>& endpoints, const std::vector<endpoint>& others) {
-        for (endpoint& e : endpoints) {
-            const auto same = std::ranges::find_if(
-                others, [&](const endpoint& other) { return other.where == e.where && other.source == e.source; });
-            e.log_ratios.push_back(same == others.end() ? estimate{std::nan("")} : same->log_ratios.front());
+    for (std::size_t i = 0; i < drafts.size(); ++i)
+        for (endpoint& e : drafts[i].endpoints) {
+            const auto same = std::ranges::find_if(more[i].endpoints, [&](const endpoint& other) {
+                return other.where == e.where && other.source == e.source;
+            });
+            e.log_ratios.push_back(same == more[i].endpoints.end() ? estimate{std::nan("")} : same->log_ratios.front());
         }
-    };
-    for (std::size_t i = 0; i < drafts.size(); ++i) {
-        add(drafts[i].endpoints, more[i].endpoints);
-        add(drafts[i].unjudged, more[i].unjudged);
-    }
 }
 
 }  // namespace
@@ -154,23 +205,18 @@ std::vector<std::vector<endpoint>> decided(std::span<const draft> drafts, double
     return by_claim;
 }
 
-verdict_kind verdict_of(std::span<const endpoint> endpoints) {
-    std::vector<support> primary;
+/// Judges a claim by its primary endpoints, by its own rule. An endpoint that was not measured is undecided.
+verdict_kind verdict_of(const draft& drafted, std::span<const endpoint> endpoints) {
+    std::vector<support> primary(missing_of(drafted, endpoints).size(), support::undecided);
     for (const endpoint& e : endpoints)
         if (e.is_primary) primary.push_back(e.corrected);
-    return verdict_of(primary);
+    return verdict_of(primary, drafted.stated->rule);
 }
 
 factors factors_of(const endpoint& e) {
     factors place = e.where;
     place.insert(place.end(), e.observed.begin(), e.observed.end());
     return place;
-}
-
-std::vector<listed_claim> listed_claims() {
-    std::vector<listed_claim> listed;
-    for (const claim_source& source : claim_sources()) listed.push_back(source.listed);
-    return listed;
 }
 
 /// Drafts all claims from every machine's rows, then decides them together, since Holm's correction spans all claims.

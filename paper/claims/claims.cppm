@@ -1,4 +1,5 @@
-/// The claims of the paper, one per file, each decided from measurements by the rule of aabblab.statistics.
+/// The claims of the paper, each decided from measurements by the rule of aabblab.statistics. endpoints.toml states
+/// what decides a claim, the files c*.cpp compute its ratios.
 export module aabblab.claims;
 
 import aabb.std;
@@ -25,7 +26,8 @@ struct endpoint {
     support corrected = support::undecided;    ///< with Holm's correction
     outcome direction = outcome::undecided;    ///< with Holm's correction, too
     support uncorrected = support::undecided;  ///< without correction, from its own interval
-    bool is_primary = false;
+    bool is_primary = false;                   ///< decides the claim
+    bool is_earlier = false;                   ///< decided it in earlier archives
     quantity compared = quantity::time;
     /// The label of the clause that reports it in a sentence: "on drifting cubes". Without one it is not mentioned.
     std::optional<std::string> subject{};
@@ -40,33 +42,62 @@ struct endpoint {
     [[nodiscard]] estimate log_ratio() const { return mean_of(log_ratios); }
 };
 
+/// A ratio that endpoints.toml names before it is measured.
+struct stated_ratio {
+    factors where{};       ///< its condition has these factors, and perhaps more
+    std::string source{};  ///< as in `endpoint`
+    expectation expected = expectation::less;
+};
+
+/// What endpoints.toml fixes of a claim before the measurements.
+struct stated_claim {
+    std::string id{};                          ///< "C1a"
+    std::string of{};                          ///< who makes it: "paper", or "SMB", which the paper follows
+    std::string claim{};                       ///< what is claimed, in our words
+    std::string quote{};                       ///< and in theirs
+    std::string regime{};                      ///< where it is claimed
+    std::string measured{};                    ///< which ratio of what
+    expectation expected = expectation::less;  ///< of ratios without their own
+    verdict_rule rule = verdict_rule::every;   ///< from ratios to the verdict
+    std::string left_open{};                   ///< what the paper leaves open; the primary ratios are its cases
+    std::vector<stated_ratio> primary{};       ///< these decide
+    std::vector<stated_ratio> earlier{};       ///< these decided in earlier archives
+};
+
+/// All of endpoints.toml.
+struct stated_analysis {
+    double margin = 0;  ///< the band of no difference
+    double level = 0;   ///< of a one-sided test, before Holm's correction
+    std::vector<std::uint64_t> seeds{};
+    std::vector<std::uint64_t> earlier_seeds{};
+    std::vector<stated_claim> claims{};
+};
+[[nodiscard]] const stated_analysis& stated();
+
 struct claim_result {
-    std::string id{};        ///< "C1"
-    std::string claim{};     ///< what the paper says
-    std::string measured{};  ///< which ratio of what
-    std::string remark{};    ///< an additional sentence
-    std::string lead{};      ///< precedes the first label of the sentence, if that needs context
+    std::string id{};  ///< "C1a"
+    std::string of{};  ///< as in `stated_claim`, like the next ones
+    std::string claim{};
+    std::string quote{};
+    std::string regime{};
+    std::string measured{};
+    std::string left_open{};
+    verdict_rule rule = verdict_rule::every;
+    std::string remark{};  ///< an additional sentence
+    std::string lead{};    ///< precedes the first label of the sentence, if that needs context
     expectation expected = expectation::less;
     verdict_kind verdict = verdict_kind::undecided;
     std::string sentence{};                  ///< the verdict in words: direction, size and conditions
     std::string brief{};                     ///< the same for clauses with primary endpoints
     std::string evidence{};                  ///< the numbers that decide
     std::vector<endpoint> primaries{};       ///< the primary endpoints; the first stands for the claim in short reports
+    std::vector<std::string> missing{};      ///< the primary endpoints that were not measured
     std::vector<endpoint> secondaries{};     ///< the other endpoints
     std::vector<std::string> experiments{};  ///< the experiments that measured it
     std::vector<factors> scenes{};           ///< of these experiments
     std::vector<named_table> tables{};       ///< in a draft, the claim's own; `judged` inserts that of all ratios first
     std::vector<figure> figures{};
 };
-
-/// A line of CMakeLists.txt, which tests/paper/recompute.py also reads.
-struct listed_claim {
-    std::string id;
-    std::size_t primaries;  ///< the number of primary endpoints
-    expectation expected;   ///< of primary endpoints without their own
-};
-/// All claims, in the order of CMakeLists.txt.
-[[nodiscard]] std::vector<listed_claim> listed_claims();
 
 /// A choice that the paper leaves open: ours, and the claim's primary ratio under the alternatives.
 struct open_choice {
@@ -113,7 +144,7 @@ struct reproduction {
 [[nodiscard]] std::string sentence_of(std::span<const endpoint> endpoints, const std::string& lead = {});
 /// The verdict of each claim, with the primary ratio, its interval and its condition.
 [[nodiscard]] table verdict_table(const reproduction& results);
-/// A short version for the README.
+/// A short version for the README, of the paper's claims only.
 [[nodiscard]] table brief_table(const reproduction& results);
 [[nodiscard]] table choice_table(const reproduction& results);
 
@@ -128,19 +159,18 @@ namespace aabblab {
 /// A claim before it is judged.
 struct draft {
     claim_result claim;
-    std::vector<factors> primary;  ///< endpoints with all factors of one of these are primary
     std::vector<endpoint> endpoints{};
-    std::vector<endpoint> unjudged{};  ///< mentioned after the sentence, by their own intervals, and not judged
+    const stated_claim* stated = nullptr;  ///< `judged` sets it
 
     /// Adds an endpoint that no sentence mentions.
-    endpoint& add(endpoint e);
+    endpoint& add(endpoint e) { return endpoints.emplace_back(std::move(e)); }
     /// Adds an endpoint to the clause of this subject.
     endpoint& add(endpoint e, const std::string& subject, const std::string& along = "",
                   quantity compared = quantity::time);
 };
 
 struct claim_source {
-    listed_claim listed;
+    std::string id;
     draft (*make)(const measurements& m);
 };
 /// Defined in a generated unit.
@@ -148,7 +178,7 @@ struct claim_source {
 
 [[nodiscard]] endpoint decided_alone(endpoint e, double band = equivalence_band);
 [[nodiscard]] std::vector<std::vector<endpoint>> decided(std::span<const draft> drafts, double band);
-[[nodiscard]] verdict_kind verdict_of(std::span<const endpoint> endpoints);
+[[nodiscard]] verdict_kind verdict_of(const draft& drafted, std::span<const endpoint> endpoints);
 
 [[nodiscard]] inline std::ptrdiff_t count_of(std::span<const endpoint> endpoints, support what) {
     return std::ranges::count(endpoints, what, &endpoint::corrected);
@@ -159,8 +189,9 @@ struct claim_source {
 }
 /// The factors of its condition and the observed ones.
 [[nodiscard]] factors factors_of(const endpoint& e);
-/// An endpoint's outcome as sentences report it, begun like `outcome`: `same` if it is decided and within the band.
-enum class wording : unsigned char { less, same, more, not_more, open };
+/// An endpoint's outcome as sentences report it, begun like `outcome`. If its region relative to the band is undecided,
+/// the claim's margin may still be decided: `not_more`, `not_less`.
+enum class wording : unsigned char { less, same, more, not_more, not_less, open };
 [[nodiscard]] wording wording_of(const endpoint& e);
 /// A number of things and what they do: "1 holds", "3 hold".
 struct counted_verb {
@@ -236,11 +267,13 @@ using condition_number = std::function<double(const condition&)>;
 
 /// The first primary condition of claims on the broad phase: 10,000 cubes that drift by a tenth of their edge.
 inline const factors drifting{{"scene", "brownian"}, {"objects", "10000"}, {"displacement", "0.1"}};
-/// The primary conditions of other claims, with which open choices are compared.
+/// Conditions of other claims, with which open choices are compared.
 inline const factors large_spheres{{"meshes", "noise_sphere:triangles=100000"}};
 inline const factors large_crowd{{"density", "0.3"}, {"objects", "60"}};  ///< of models that touch
 
+// None is made of another: clang 19 does not initialise the inline variables of a module in their order.
 inline const selection traditional{{kind::sort, "insertion"}, {kind::partition, "none"}, {kind::sweep, "one_axis"}};
+inline const selection cut{{kind::sort, "insertion"}, {kind::partition, "axial_cut:axes=2"}, {kind::sweep, "one_axis"}};
 inline const selection improved{
     {kind::sort, "shell"}, {kind::partition, "axial_cut:axes=2"}, {kind::sweep, "one_axis"}};
 inline const selection uncut{{kind::sort, "shell"}, {kind::partition, "none"}, {kind::sweep, "one_axis"}};

@@ -33,11 +33,6 @@ estimate difference_of_means(const cells& above, const cells& below) {
     return bootstrap(above.size(), [&](const resample& d) { return d.mean_of(above) - d.mean_of(below); });
 }
 
-endpoint& draft::add(endpoint e) {
-    e.is_primary = std::ranges::any_of(primary, [&](const factors& wanted) { return matches(e.where, wanted); });
-    return endpoints.emplace_back(std::move(e));
-}
-
 endpoint& draft::add(endpoint e, const std::string& subject, const std::string& along, quantity compared) {
     e.subject = subject;
     e.along = along;

@@ -15,7 +15,7 @@ struct measured_choices {
     void add(const std::string& label, const endpoint& measured) {
         if (measured.is_known()) alternatives.push_back({label, measured});
     }
-    /// Adds claim C1's ratio.
+    /// Adds claim C1a's ratio.
     void add_search(const std::string& label, const condition& c) {
         add(label, endpoint_of(c, improved, traditional, "frame_cpu_ms"));
     }
@@ -42,7 +42,7 @@ measured_choices ratios_in_condition(const std::vector<const condition*>& condit
     return measured;
 }
 
-/// Claim C1's ratio in the only condition of the experiment on choices.
+/// Claim C1a's ratio in the only condition of the experiment on choices.
 measured_choices search_choices(const measurements& m, const std::vector<tried_choice>& choices) {
     return ratios_in_condition(matching(m.conditions_of("choices"), {}), "frame_cpu_ms", " (a separate run)", choices);
 }
@@ -60,7 +60,7 @@ measured_choices displacement_choices(const measurements& m) {
     return measured;
 }
 
-/// Claim C1's ratio in each scene in which boxes move by 0.1 of their extent per frame, as alternatives to our choice,
+/// Claim C1a's ratio in each scene in which boxes move by 0.1 of their extent per frame, as alternatives to our choice,
 /// the drifting cubes of the scene `brownian`. Of the sizes of that scene, the nearest to theirs is compared.
 measured_choices scene_choices(const measurements& m) {
     measured_choices measured{.where = "displacement 0.1 of the extent", .ours = ""};
@@ -119,7 +119,7 @@ measured_choices model_choices(const measurements& m) {
     return measured;
 }
 
-/// Claim C1's ratio with and without the time of the first frame. Our choice is without.
+/// Claim C1a's ratio with and without the time of the first frame. Our choice is without.
 measured_choices first_frame_choices(const measurements& m) {
     measured_choices measured{.where = "", .ours = "without the first frame"};
     for (const condition* c : matching(m.conditions_of("figure1"), drifting)) {
@@ -171,23 +171,23 @@ std::vector<open_choice> open_choices(const measurements& m) {
             "Which axes are sorted and swept?", "one_axis: the axis on which centres vary most, the other two tested",
             "three sorted lists (all_axes) report a pair that overlaps on each; one list finds the same pairs with "
             "less memory, and both compositions use it",
-            "C1",
+            "C1a",
             search_choices(
                 m,
                 {{"best axis", shell_cut, traditional},
                  {"x", improved.with(kind::sweep, "one_axis:axis=x"), traditional.with(kind::sweep, "one_axis:axis=x")},
                  {"all axes", improved.with(kind::sweep, "all_axes"), traditional.with(kind::sweep, "all_axes")}})),
         judge("How many axes are cut?", "two: those on which centres vary most, the swept one last",
-              "\"each axis is cut\" allows three; the swept axis needs no cut", "C1",
+              "\"each axis is cut\" allows three; the swept axis needs no cut", "C1a",
               search_choices(m, {{"2", shell_cut, traditional},
                                  {"1", shell("ciura", "axial_cut:axes=1"), traditional},
                                  {"3", shell("ciura", "axial_cut:axes=3"), traditional}})),
         judge("How many segments?", "auto: the cheapest number by a cost model of uniformly distributed boxes",
-              "the paper gives a limit and no number; claim C4 has the whole curve", "C1",
+              "the paper gives a limit and no number; claim C4a has the whole curve", "C1a",
               search_choices(m, {{"auto", shell_cut, traditional},
                                  {"8", shell("ciura", "axial_cut:axes=2,segments=8"), traditional}})),
         judge("How are Shell sort's gaps chosen?", "Ciura's sequence",
-              "the best known by experiment; the paper names none", "C1",
+              "the best known by experiment; the paper names none", "C1a",
               search_choices(m, {{"Ciura", shell_cut, traditional},
                                  {"Tokuda", shell("tokuda"), traditional},
                                  {"Shell", shell("shell"), traditional}})),
@@ -195,11 +195,11 @@ std::vector<open_choice> open_choices(const measurements& m) {
               "the paper gives no number; with a fixed one the work per element stays constant, and O(N) holds", "C2",
               gap_count_choices(m)),
         judge("How far do objects move per frame?", "up to a tenth of an edge", "\"only slightly from last time step\"",
-              "C1", displacement_choices(m)),
+              "C1a", displacement_choices(m)),
         judge("How are objects distributed?", "drifting cubes, a tenth of the volume filled",
-              "the scene of Broadmark, on which other systems are compared", "C1", scene_choices(m)),
+              "the scene of Broadmark, on which other systems are compared", "C1a", scene_choices(m)),
         judge("Does the first frame count?", "no: it is sorted by std::sort and timed separately",
-              "its list is not almost sorted, so insertion sort would be quadratic", "C1", first_frame_choices(m)),
+              "its list is not almost sorted, so insertion sort would be quadratic", "C1a", first_frame_choices(m)),
         judge("What replaces the box of a leaf?",
               "the triangle is tested against the other box (Möller's test with a margin that keeps it exact)",
               "\"we can directly adopt triangle to test\"; its box on the fly, or no test, are other readings", "C7b",

@@ -59,6 +59,9 @@ std::string outcome_text(std::span<const endpoint> endpoints, wording form) {
     const quantity compared = endpoints.front().compared;
     const std::string noun = noun_of(compared);
     if (form == wording::not_more) return "no more" + (noun.empty() ? "" : " " + noun);
+    if (form == wording::not_less)
+        return (compared == quantity::bytes || compared == quantity::box_tests ? "no fewer" : "no less") +
+               (noun.empty() ? "" : " " + noun);
     const bool is_named = !noun.empty() && compared != quantity::time;
     return form == wording::same ? "no difference" + (is_named ? " in the " + noun : "")
                                  : "undecided" + (is_named ? " (" + noun + ")" : "");
@@ -159,7 +162,7 @@ const claim_result* claim_named(std::span<const claim_result> claims, const std:
 /// The part of the headline that compares the improved broad phase with the classic incremental sweep and prune, under
 /// the paper's premise that objects hardly move; empty if it was not measured.
 std::string classic_sweep_text(std::span<const claim_result> claims) {
-    const claim_result* claim = claim_named(claims, "C1");
+    const claim_result* claim = claim_named(claims, "C1a");
     if (!claim) return "";
     for (const endpoint& e : claim->primaries)
         if (value_of(e.where, "over") == "incremental")
@@ -173,7 +176,7 @@ std::string classic_sweep_text(std::span<const claim_result> claims) {
 std::string meaning_of_undecided_in(const std::string& sentence) {
     return sentence.find("undecided") == std::string::npos
                ? ""
-               : " Undecided: the measurements do not show which is faster.";
+               : " Undecided: the intervals show neither a difference beyond the band nor that there is none.";
 }
 
 /// The clause that reports a claim's first primary endpoint, for the headline.
@@ -188,9 +191,10 @@ clause first_clause(std::span<const claim_result> claims, const std::string& id)
 }  // namespace
 
 wording wording_of(const endpoint& e) {
-    const bool is_within_band = 1 / (1 + equivalence_band) <= e.ratio && e.ratio <= 1 + equivalence_band;
-    if (e.direction != outcome::undecided) return is_within_band ? wording::same : static_cast<wording>(e.direction);
-    return e.corrected == support::favours ? wording::not_more : wording::open;
+    if (e.direction != outcome::undecided) return static_cast<wording>(e.direction);
+    return e.corrected == support::favours       ? wording::not_more
+           : e.corrected == support::contradicts ? wording::not_less
+                                                 : wording::open;
 }
 
 /// Appends the counts above 0 with their verbs: ", 2 hold, 1 does not hold and 3 are undecided."
@@ -232,20 +236,23 @@ std::string sentence_of(std::span<const endpoint> endpoints, const std::string& 
     return text + ".";
 }
 
-/// A summary of three parts: broad phase, narrow phase, number of verdicts of each kind.
+/// A summary of three parts: broad phase, narrow phase, number of verdicts of each kind on claims of the paper.
 std::vector<std::string> headline_of(std::span<const claim_result> claims) {
-    const auto count = [&](verdict_kind v) { return std::ranges::count(claims, v, &claim_result::verdict); };
+    const auto is_of_paper = [](const claim_result& c) { return c.of == "paper"; };
+    const auto count = [&](verdict_kind v) {
+        return std::ranges::count_if(claims, [&](const claim_result& c) { return is_of_paper(c) && c.verdict == v; });
+    };
     const std::string broad_phase =
         clause_text(
             "Time of the improved broad phase (Shell sort, axial cut), compared with the traditional one (insertion "
             "sort, no cut)",
-            first_clause(claims, "C1")) +
+            first_clause(claims, "C1a")) +
         classic_sweep_text(claims) + ".";
     return {broad_phase + meaning_of_undecided_in(broad_phase),
             clause_text("The compressed tree of the narrow phase, compared with the canonical one",
                         first_clause(claims, "C7a")) +
                 clause_text("; its queries", first_clause(claims, "C7b")) + ".",
-            counts_text(fmt::format("Of {} claims", claims.size()),
+            counts_text(fmt::format("Of the paper's {} claims", std::ranges::count_if(claims, is_of_paper)),
                         {{count(verdict_kind::holds), "holds", "hold"},
                          {count(verdict_kind::in_part), "holds in part", "hold in part"},
                          {count(verdict_kind::does_not_hold), "does not hold", "do not hold"},

@@ -101,7 +101,8 @@ table verdict_table(const reproduction& results) {
 
 table brief_table(const reproduction& results) {
     table t = empty_table({"", "claim", "verdict"});
-    for (const claim_result& c : results.claims) t.rows.push_back({c.id, c.claim, text_of(c.verdict)});
+    for (const claim_result& c : results.claims)
+        if (c.of == "paper") t.rows.push_back({c.id, c.claim, text_of(c.verdict)});
     return t;
 }
 
@@ -125,7 +126,8 @@ named_table bands_table(std::span<const draft> drafts) {
     for (const double band : {0.0, 0.03, 0.05, 0.1}) {
         t.columns.push_back({fmt::format("band {:.0f} %", 100 * band), /*is_number=*/false});
         const std::vector<std::vector<endpoint>> endpoints = decided(drafts, band);
-        for (std::size_t i = 0; i < drafts.size(); ++i) t.rows[i].push_back(text_of(verdict_of(endpoints[i])));
+        for (std::size_t i = 0; i < drafts.size(); ++i)
+            t.rows[i].push_back(text_of(verdict_of(drafts[i], endpoints[i])));
     }
     return {
         "bands",

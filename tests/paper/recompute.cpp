@@ -14,7 +14,7 @@ TEST_CASE("An independent program in Python computes the same ratios, intervals,
     const program_result same = recomputed();
     INFO(same.out + same.err);
     CHECK(same.status == 0);
-    CHECK(same.out.ends_with("of " + std::to_string(aabblab::listed_claims().size()) +
+    CHECK(same.out.ends_with("of " + std::to_string(aabblab::stated().claims.size()) +
                              " claims recomputed, 0 differences\n"));
 
     // Of the claims, of triangle tests and of lists.

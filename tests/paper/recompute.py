@@ -3,12 +3,14 @@
 
 recompute.py REPORT [ARCHIVE]: reads results.csv of every experiment and c6/process-N.json, from the folder REPORT or from
 an archive, computes every ratio that REPORT/endpoints.csv names with its interval, decides it by the rule of
-paper/reproduce/rule.md, and compares with what endpoints.csv and verdicts.csv say; then every figure, as
-recompute_figures.py does. Ends with 1 where a number differs in its third digit, or a verdict or a figure differs.
+paper/claims/endpoints.toml, which also says which ratios decide which claim and how, and compares with what endpoints.csv
+and verdicts.csv say; then every figure, as recompute_figures.py does. Ends with 1 where a number differs in its third
+digit, or a verdict or a figure differs.
 """
 
 import csv
 import functools
+import itertools
 import json
 import math
 import pathlib
@@ -16,17 +18,19 @@ import re
 import sys
 import tarfile
 import tempfile
+import tomllib
 
 if __name__ == "__main__":
     # The module under its own name, so that both files share one copy of its functions.
     sys.modules["recompute"] = sys.modules["__main__"]
 
-BAND = math.log(1.05)
-ONE_SIDED = 0.025
+# What decides each claim, fixed before the measurements.
+STATED = tomllib.loads(
+    (pathlib.Path(__file__).resolve().parents[2] / "paper" / "claims" / "endpoints.toml").read_text(encoding="utf-8")
+)
+MARGIN = math.log1p(STATED["rule"]["margin"])
+ONE_SIDED = STATED["rule"]["level"]
 DRAWS = 1000
-# The claims that there are, with how many primary endpoints each has: one that is left out or relabelled is noticed.
-CLAIMS = pathlib.Path(__file__).resolve().parents[2] / "paper" / "claims" / "CMakeLists.txt"
-CLAIM_LINE = re.compile(r"^aabblab_claim\((\w+) \w+ PRIMARY (\d+)( EXPECTS not_more)?\)$", re.MULTILINE)
 KINDS = ["prepare", "sort", "partition", "sweep", "build", "tree", "triangle"]
 MASK = (1 << 64) - 1
 
@@ -356,7 +360,8 @@ def grid(size):
 
 
 def regret(results, where):
-    """The worst slowdown over scenes of as many objects, each against its best cell size, of C5."""
+    """The worst slowdown of the cut over scenes of as many objects, over that of the best single cell size, of C5b. A
+    slowdown is over the scene's best cell size."""
     scenes = [rows for factors, rows in results.conditions("c5") if factors["objects"] == where["objects"]]
 
     def is_grid(rows, size):
@@ -377,9 +382,7 @@ def regret(results, where):
         return max(found)
 
     def statistic(draw):
-        if where["comparison"] == "axial_cut over the best single cell size":
-            return worst(draw, None) - min(worst(draw, size) for size in sizes)
-        return worst(draw, None)
+        return worst(draw, None) - min(worst(draw, size) for size in sizes)
 
     return bootstrap(scenes[0].size(over_cut[0][sizes[0]]), statistic)
 
@@ -401,7 +404,7 @@ def growth_with_world(results, where):
 
 
 def between_conditions(results, experiment, text, where):
-    """Time an object over that at the least value of a factor, of C13."""
+    """Time or bytes an object over those at the least value of a factor, of SMB's claim."""
     name, _, who = text.partition(" an object of ")
     factor, _, value = where["over"].partition(" ")
     place = {k: v for k, v in where.items() if k not in ("over", "quantity")}
@@ -427,9 +430,27 @@ def of_tests(folder, text):
     return mean_ratio((len(cells), 1, max(len(cell) for cell in cells.values())), cells)
 
 
+def is_measured(results, ratio):
+    """Whether the rows have a stated ratio, which names only some factors of its condition."""
+    experiment = ratio["source"].partition(": ")[0]
+    wheres = [ratio["where"]]
+    if (results.folder / experiment / "results.csv").exists():
+        for factors, _ in results.conditions(experiment):
+            if all(ratio["where"].get(name, value) == value for name, value in factors.items()):
+                wheres.append({**factors, **ratio["where"]})
+    for where in wheres:
+        text = "; ".join(f"{name}={value}" for name, value in where.items())
+        try:
+            if math.isfinite(estimate_of(results, {"source": ratio["source"], "where": text})[0]):
+                return True
+        except (SystemExit, OSError, KeyError, ValueError, IndexError):
+            pass
+    return False
+
+
 def estimate_of(results, endpoint):
     experiment, _, text = endpoint["source"].partition(": ")
-    where = dict(part.split("=", 1) for part in endpoint["where"].split("; "))
+    where = where_of(endpoint)
     if experiment == "c6":
         return of_tests(results.folder, text)
     if text.startswith("growth of comparisons"):
@@ -446,49 +467,78 @@ def estimate_of(results, endpoint):
 # The rule.
 
 
+def stated_ratios(claim, role):
+    """The ratios of a claim that decide it ("primary"), or did ("earlier"): lists multiply out, {names} are replaced."""
+    for entry in claim.get(role, []):
+        for table in entry["where"]:
+            lists = [value if isinstance(value, list) else [value] for value in table.values()]
+            for values in itertools.product(*lists):
+                where = dict(zip(table, values))
+                names = {**STATED["arms"], **where}
+                yield {
+                    "source": re.sub(r"{(\w+)}", lambda name: names[name[1]], entry["ratio"]),
+                    "where": where,
+                    "expected": entry.get("expects", claim["expects"]),
+                }
+
+
+def where_of(endpoint):
+    return dict(part.split("=", 1) for part in endpoint["where"].split("; "))
+
+
+def is_this(endpoint, ratio):
+    where = where_of(endpoint)
+    return endpoint["source"] == ratio["source"] and all(
+        where.get(name, "") == value for name, value in ratio["where"].items()
+    )
+
+
 def tails(estimate):
     return {
-        "less": chance_above(estimate, 0),
-        "more": chance_below(estimate, 0),
-        "same": max(chance_above(estimate, BAND), chance_below(estimate, -BAND)),
-        "not more": chance_above(estimate, BAND),
-        "within": abs(estimate[0]) <= BAND,
+        "less": chance_above(estimate, -MARGIN),
+        "not less": chance_below(estimate, -MARGIN),
+        "not more": chance_above(estimate, MARGIN),
+        "more": chance_below(estimate, MARGIN),
     }
 
 
-def least(p, expected):
-    return min(p["less"], p["more"], p["not more"] if expected == "not more" else p["same"])
+def margin_test(e):
+    """The chances of the measurement if it were not for the claim, and if it were not against it."""
+    return [e["p"][name] for name in (("less", "not less") if e["expected"] == "less" else ("not more", "more"))]
 
 
 def holm(endpoints):
-    order = sorted(range(len(endpoints)), key=lambda i: (least(endpoints[i]["p"], endpoints[i]["expected"]), i))
+    order = sorted(range(len(endpoints)), key=lambda i: (min(margin_test(endpoints[i])), i))
     for e in endpoints:
         e["level"] = 0.0
     for done, i in enumerate(order):
         level = ONE_SIDED / (len(order) - done)
-        if least(endpoints[i]["p"], endpoints[i]["expected"]) > level:
+        if min(margin_test(endpoints[i])) > level:
             break
         endpoints[i]["level"] = level
 
 
 def direction(e):
-    for found in ("same", "less", "more"):
-        if e["p"][found] <= e["level"]:
-            return found
-    return "open"
+    p, level = e["p"], e["level"]
+    if p["less"] <= level or p["more"] <= level:
+        return "less" if p["less"] <= level else "more"
+    return "same" if p["not less"] <= level and p["not more"] <= level else "open"
 
 
 def outcome(e):
-    if e["expected"] == "not more" and e["p"]["not more"] <= e["level"]:
-        return "for"
-    if e["p"]["within"] and direction(e) != "open":
-        return "no difference"
-    return {"same": "no difference", "less": "for", "more": "against", "open": "undecided"}[direction(e)]
+    for_it, against_it = (p <= e["level"] for p in margin_test(e))
+    if for_it or not against_it:
+        return "for" if for_it else "undecided"
+    return "no difference" if e["expected"] == "less" and e["p"]["not more"] <= e["level"] else "against"
 
 
-def verdict(endpoints):
-    found = {e["outcome"] for e in endpoints if e["endpoint"] == "primary"}
-    if "for" in found and found & {"against", "no difference"}:
+def verdict(rule, outcomes):
+    """Of the outcomes of all primary ratios, those that were not measured being undecided."""
+    found = set(outcomes)
+    otherwise = found & {"against", "no difference"}
+    if rule == "every" and ("against" in found or ("for" in found and otherwise)):
+        return "does not hold"
+    if "for" in found and otherwise:
         return "holds in part"
     if not found or "undecided" in found:
         return "undecided"
@@ -519,32 +569,42 @@ def recompute(folder, results):
         for name, mine in (("ratio", value), ("low", value - reach), ("high", value + reach)):
             if not agree(math.exp(mine), float(e[name])):
                 differs(f"{e['claim']} {e['where']}: {name} is {math.exp(mine):.4g}, not {e[name]}")
-    holm([e for e in endpoints if e["endpoint"] == "primary"])
-    claims = {}
-    for e in endpoints:
-        claims.setdefault(e["claim"], []).append(e)
-    for of_claim in claims.values():
-        holm([e for e in of_claim if e["endpoint"] != "primary"])
-    stated = {row[0]: row[2] for row in verdicts}
-    for claim, wanted, not_more in CLAIM_LINE.findall(CLAIMS.read_text(encoding="utf-8")):
-        # A claim that was added after the run has nothing to be decided by.
-        if claim not in claims and stated.get(claim, "undecided") == "undecided":
-            continue
-        primaries = [e for e in claims.get(claim, []) if e["endpoint"] == "primary"]
-        if len(primaries) != int(wanted):
-            differs(f"{claim} has {len(primaries)} primary endpoints, not {wanted}")
-        if claim != "C4" and any((e["expected"] == "not more") != bool(not_more) for e in primaries):
-            differs(f"{claim} expects something else of a primary endpoint")
-    for claim, of_claim in claims.items():
+    # The roles of ratios and what they expect, from what was stated before the measurements.
+    told = {row[0]: row[2] for row in verdicts}
+    primaries = {}
+    missing = {}
+    for claim in STATED["claim"]:
+        of_claim = [e for e in endpoints if e["claim"] == claim["id"]]
+        primaries[claim["id"]] = []
+        missing[claim["id"]] = 0
+        for ratio in stated_ratios(claim, "primary"):
+            rows = [e for e in of_claim if is_this(e, ratio)]
+            if len(rows) > 1:
+                differs(f"{claim['id']} has {len(rows)} ratios {ratio}")
+            if not rows:
+                missing[claim["id"]] += 1
+                if is_measured(results, ratio):
+                    differs(f"{claim['id']} {ratio['where']} was measured, and is left out")
+            for e in rows:
+                if e["expected"] != ratio["expected"]:
+                    differs(f"{claim['id']} {e['where']} expects {ratio['expected']}, not {e['expected']}")
+            primaries[claim["id"]] += rows
         for e in of_claim:
-            told = e["outcome"]
-            e["outcome"] = outcome(e)
-            if told != e["outcome"]:
-                differs(f"{claim} {e['where']}: {e['outcome']}, not {told}")
+            if (e["endpoint"] == "primary") != any(e is primary for primary in primaries[claim["id"]]):
+                differs(f"{claim['id']} {e['where']}: {e['endpoint']} is not its role")
+    holm([e for of_claim in primaries.values() for e in of_claim])
+    for claim in STATED["claim"]:
+        of_claim = [e for e in endpoints if e["claim"] == claim["id"]]
+        holm([e for e in of_claim if not any(e is primary for primary in primaries[claim["id"]])])
+        for e in of_claim:
+            if e["outcome"] != outcome(e):
+                differs(f"{claim['id']} {e['where']}: {outcome(e)}, not {e['outcome']}")
             if e["direction"] != direction(e):
-                differs(f"{claim} {e['where']}: {direction(e)}, not {e['direction']}")
-        if verdict(of_claim) != stated[claim]:
-            differs(f"{claim}: {verdict(of_claim)}, not {stated[claim]}")
+                differs(f"{claim['id']} {e['where']}: {direction(e)}, not {e['direction']}")
+        outcomes = [outcome(e) for e in primaries[claim["id"]]] + ["undecided"] * missing[claim["id"]]
+        if verdict(claim["verdict"], outcomes) != told[claim["id"]]:
+            differs(f"{claim['id']}: {verdict(claim['verdict'], outcomes)}, not {told[claim['id']]}")
+    claims = {e["claim"] for e in endpoints}
     recompute_figures.check(folder, results, differs)
     print(f"{len(endpoints)} ratios of {len(claims)} claims recomputed, {differences} differences")
     return 1 if differences else 0
