@@ -512,6 +512,60 @@ TEST_CASE("Overlapping labels are shifted slightly, or moved to a legend if that
     }
 }
 
+TEST_CASE("Labels at the ends of lines stay within the figure") {
+    std::vector<aabblab::series> lines;
+    for (const auto& [label, end] :
+         {std::pair("canonical", 31.), {"shared planes", 33.}, {"compressed", 36.}, {"leafless", 37.}})
+        lines.push_back(
+            series_of(label, series_style::line, {{1000, end / 50, end / 50, end / 50}, {1e6, end, end, end}}));
+    figure high = figure_of(lines);
+    figure low = high;
+    for (aabblab::series& s : low.lines) std::swap(s.points[0].y, s.points[1].y);
+    for (figure& f : {std::ref(high), std::ref(low)}) {
+        f.x.logarithmic = f.y.logarithmic = true;
+        const std::string svg = svg_of(f);
+        require_texts_inside(svg);
+        require_texts_disjoint(svg);
+    }
+    // They stand close together there, and not in a legend.
+    const std::string svg = svg_of(high);
+    CHECK(text_in(svg, "leafless").left > plot_of(svg).right);
+}
+
+TEST_CASE("The line of a mark does not run through the text of another") {
+    figure f = figure_of({series_of("s", series_style::line, {{0.05, 1, 1, 1}, {2, 2, 2, 2}})});
+    f.x.logarithmic = true;
+    f.marks = {{0.157, "5 %"}, {0.314, "10 % of the contact time"}, {1, "dormand_prince 0.9984"}, {2, "verlet 2"}};
+    const std::string svg = svg_of(f);
+    require_texts_inside(svg);
+    struct area {
+        double left, top, right, bottom;
+    };
+    std::vector<area> blank;
+    const std::regex white(R"re(d="M([0-9.]+) ([0-9.]+)L([0-9.]+) \2L\3 ([0-9.]+)L[^"]*" fill="#FFFFFF")re");
+    for (std::sregex_iterator i(svg.begin(), svg.end(), white), end; i != end; ++i)
+        blank.push_back({std::stod((*i)[1]), std::stod((*i)[4]), std::stod((*i)[3]), std::stod((*i)[2])});
+    std::size_t crossings = 0;
+    const std::regex line(R"re(d="M([0-9.]+) ([0-9.]+)L\1 ([0-9.]+)"[^>]*stroke-dasharray="2.4 4")re");
+    std::size_t marks = 0;
+    for (std::sregex_iterator i(svg.begin(), svg.end(), line), end; i != end; ++i, ++marks) {
+        const double x = std::stod((*i)[1]);
+        const double top = std::stod((*i)[3]);
+        for (const aabblab::figure_mark& m : f.marks) {
+            const placed_text text = text_in(svg, m.label);
+            if (x <= text.left || text.right <= x || text.bottom <= top) continue;
+            ++crossings;
+            CAPTURE(m.label, x, text.left, text.right);
+            CHECK(std::ranges::any_of(blank, [&](const area& a) {
+                return a.left <= text.left + 1 && text.right - 1 <= a.right && a.top <= text.top &&
+                       text.bottom <= a.bottom;
+            }));
+        }
+    }
+    CHECK(marks == f.marks.size());
+    CHECK(crossings > 0);  // without an area behind the text
+}
+
 TEST_CASE("Panels share axes, styles and a legend") {
     for (const std::size_t count : {1, 2, 3, 4, 7}) {
         CAPTURE(count);

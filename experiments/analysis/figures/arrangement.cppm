@@ -15,6 +15,8 @@ struct arrangement {
         double left, right, bottom, top;
         bool has_x_ticks, has_y_ticks;
         std::vector<double> mark_tops;  ///< the upper ends of the lines of its marks
+        std::vector<std::pair<place, place>>
+            gaps;  ///< lower left and upper right corners of texts that hide these lines
     };
     std::vector<box> plots;  ///< one per panel
 
@@ -126,12 +128,14 @@ struct flag {
     std::size_t row = 0;  ///< counted from below
 };
 
+/// Whether the line of one mark, if it is high enough, runs through the text of another.
+bool crosses(const flag& line, const flag& text) {
+    return text.begin < line.line_x && line.line_x < text.end;
+}
+
 /// Assigns rows to the texts of marks, whose lines end in the row of their text: texts that overlap get different rows,
 /// and one that is crossed by another's line a higher row. Returns the number of rows.
 std::size_t assign_rows(std::vector<flag>& flags) {
-    const auto crosses = [](const flag& line, const flag& text) {
-        return text.begin < line.line_x && line.line_x < text.end;
-    };
     // Each round settles at least one row, except for texts that cross each other's lines.
     for (std::size_t round = 0; round < flags.size(); ++round)
         for (flag& a : flags)
@@ -331,13 +335,22 @@ private:
             const end_label& b = ends[upper];
             return (height_of(a.lines) + height_of(b.lines)) / 2 - (b.middle - a.middle);
         };
-        // Relaxation: of two labels that overlap, one moves up and one down by half of it, until none do.
+        // Relaxation: of two labels that overlap, one moves up and one down by half of it, until none do. All stay
+        // above the labels of the x axis, and below the upper edge of the figure.
+        constexpr double below_axis = 0.5;
+        constexpr double above_plot = 0.9;
+        const auto keep_inside = [&](end_label& end) {
+            const double half = height_of(end.lines) / 2;
+            end.middle = std::clamp(end.middle, half - below_axis, plot_height_ + above_plot - half);
+        };
         constexpr int rounds = 200;
         for (int round = 0; round < rounds; ++round)
             for (std::size_t i = 1; i < ends.size(); ++i) {
                 const double excess = std::max(overlap(i), 0.);
                 ends[i - 1].middle -= excess / 2;
                 ends[i].middle += excess / 2;
+                keep_inside(ends[i - 1]);
+                keep_inside(ends[i]);
             }
         for (std::size_t i = 0; i < ends.size(); ++i)
             if ((i > 0 && overlap(i) > most_overlap) || std::abs(ends[i].middle - ends[i].wanted) > furthest) return {};
@@ -441,6 +454,10 @@ private:
                 add({f.line_x + gap / 2, height}, shown.marks[i].label);
             else
                 add({f.line_x - gap / 2, height}, shown.marks[i].label, words::anchor::right);
+            // Of two texts that cross each other's lines, the upper one's line has to pass the lower one's text.
+            if (std::ranges::any_of(flags, [&](const flag& other) { return other.row > f.row && crosses(other, f); }))
+                plot.gaps.emplace_back(place{f.begin + gap / 4, height - line_height / 2},
+                                       place{f.end - gap / 4, height + line_height / 2});
         }
     }
 

@@ -49,6 +49,7 @@ constexpr std::array<sign, 10> signs = {{{is_disc, 0, false, 0.25},
 
 constexpr std::string_view frame_colour = "#404040";
 constexpr std::string_view grid_colour = "#E0E0E0";
+constexpr std::string_view background_colour = "#FFFFFF";
 constexpr double line_width = 0.14;
 constexpr double frame_width = 0.09;
 constexpr double thin = 0.06;
@@ -226,11 +227,14 @@ private:
             const double mark_x = x(panel_->marks[i].x);
             stroke({{{mark_x, plot_->bottom}, {mark_x, plot_->mark_tops[i]}}}, frame_colour, thin, {0.15, 0.25});
         }
+        for (const auto& [low, high] : plot_->gaps)
+            sheet_.parts.emplace_back(strokes{
+                .lines = {{low, {high.x, low.y}, high, {low.x, high.y}}}, .colour = background_colour, .closed = true});
     }
 
     /// Draws the axes with ticks. Inner plots share the labels of outer ones; long names below may be turned.
     void draw_frame() {
-        const auto& [left, right, bottom, top, has_x, has_y, mark_tops] = *plot_;
+        const auto& [left, right, bottom, top, has_x, has_y, mark_tops, gaps] = *plot_;
         std::vector<places> lines{{{left, top}, {left, bottom}, {right, bottom}}};
         const auto length = [](const tick& t) { return t.label.empty() ? 0.2 : 0.4; };
         for (const tick& t : layout_.x_ticks) lines.push_back({{x(t.at), bottom}, {x(t.at), bottom - length(t)}});
