@@ -24,6 +24,14 @@ std::string address_of(const std::string& svg) {
     return address;
 }
 
+constexpr std::string_view contents_id = "contents";
+constexpr std::string_view contents_title = "Contents";
+
+/// A target of links in Markdown, which has none of its own.
+std::string markdown_target(std::string_view id) {
+    return element("a", {{"id", id}}, "") + "\n\n";
+}
+
 }  // namespace
 
 /// The table in HTML, in an element that scrolls; columns of numbers have a class, for their alignment.
@@ -55,8 +63,43 @@ void page::title(std::string_view text) {
 }
 
 void page::heading(std::string_view text, std::string_view id) {
-    html_ += element("h2", {{"id", id}}, markup_text(text)) + "\n";
+    std::string markup = markup_text(text);
+    if (contents_)
+        markup += " " + element("a", {{"class", "up"}, {"href", "#" + std::string(contents_id)}}, contents_title);
+    html_ += element("h2", {{"id", id}}, markup) + "\n";
+    if (!id.empty()) {
+        sections_.push_back({std::string(text), std::string(id)});
+        markdown_ += markdown_target(id);
+    }
     markdown_ += "## " + std::string(text) + "\n\n";
+}
+
+void page::contents() {
+    contents_ = {.html = html_.size(), .markdown = markdown_.size()};
+}
+
+/// The page, with the list of all sections inserted where `contents` was called.
+std::string page::html() const {
+    std::string text = html_;
+    if (contents_) {
+        std::string entries = "\n";
+        for (const section& s : sections_)
+            entries += element("li", {}, element("a", {{"href", "#" + s.id}}, markup_text(s.text))) + "\n";
+        text.insert(contents_->html, element("nav", {{"id", contents_id}},
+                                             element("h2", {}, contents_title) + "\n" + element("ul", {}, entries)) +
+                                         "\n");
+    }
+    return text + "</body></html>\n";
+}
+
+std::string page::markdown() const {
+    std::string text = markdown_;
+    if (contents_) {
+        std::string list = markdown_target(contents_id) + "## " + std::string(contents_title) + "\n\n";
+        for (const section& s : sections_) list += "- [" + s.text + "](#" + s.id + ")\n";
+        text.insert(contents_->markdown, list + "\n");
+    }
+    return text;
 }
 
 void page::paragraph(std::string_view text, std::string_view kind) {

@@ -15,8 +15,10 @@ public:
     explicit page(std::string_view title, std::string_view style = "");
 
     void title(std::string_view text);
-    /// @param id the target of links to the section
+    /// @param id the target of links to the section; the contents list only sections that have one
     void heading(std::string_view text, std::string_view id = "");
+    /// Places the table of contents here: links to all sections, also to later ones, which link back.
+    void contents();
     /// @param kind a CSS class, such as "soft"
     void paragraph(std::string_view text, std::string_view kind = "");
     void add(const table& t);
@@ -31,11 +33,20 @@ public:
     void add_markdown(std::string_view text) { markdown_ += text; }
     void folded(std::string_view title, std::string_view html);
 
-    [[nodiscard]] std::string html() const { return html_ + "</body></html>\n"; }
-    [[nodiscard]] const std::string& markdown() const { return markdown_; }
+    [[nodiscard]] std::string html() const;
+    [[nodiscard]] std::string markdown() const;
 
 private:
+    struct section {
+        std::string text, id;
+    };
+    struct position {
+        std::size_t html, markdown;  ///< offsets in the texts below
+    };
+
     std::string html_, markdown_;
+    std::vector<section> sections_;  // of the contents
+    std::optional<position> contents_;
 };
 
 }  // namespace aabblab

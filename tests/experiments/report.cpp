@@ -209,6 +209,27 @@ TEST_CASE("Tables are escaped for TeX and HTML") {
     REQUIRE(holds(aabblab::to_html({{{"a", false}}, {{"<x>"}}}), "<td>&lt;x&gt;</td>"));
 }
 
+TEST_CASE("The contents of a page link to its sections, and later sections back to them") {
+    aabblab::page out("A page");
+    out.heading("Before", "before");
+    out.contents();
+    out.heading("A & B", "after");
+    out.heading("Unlisted");
+    const std::string html = out.html();
+    CHECK(
+        holds(html,
+              "<h2 id=\"before\">Before</h2>\n<nav id=\"contents\"><h2>Contents</h2>\n"
+              "<ul>\n<li><a href=\"#before\">Before</a></li>\n<li><a href=\"#after\">A &amp; B</a></li>\n</ul></nav>\n"
+              "<h2 id=\"after\">A &amp; B <a class=\"up\" href=\"#contents\">Contents</a></h2>\n"));
+    CHECK(out.markdown() ==
+          "<a id=\"before\"></a>\n\n## Before\n\n<a id=\"contents\"></a>\n\n## Contents\n\n- [Before](#before)\n"
+          "- [A & B](#after)\n\n<a id=\"after\"></a>\n\n## A & B\n\n## Unlisted\n\n");
+    aabblab::page plain("A page");
+    plain.heading("Only", "only");
+    CHECK_FALSE(holds(plain.html(), "contents"));
+    CHECK(plain.markdown() == "<a id=\"only\"></a>\n\n## Only\n\n");
+}
+
 TEST_CASE("A table fits the given width: it drops spare columns, replaces long names or splits into blocks") {
     const aabblab::table t{{{"sort", false}, {"tree", false}, {"ms"}, {"spare", true, 1}, {"first", true, 2}},
                            {{"insertion", "canonical", "1", "2", "3"}, {"std", "compressed:build=sah", "4", "5", "6"}}};
