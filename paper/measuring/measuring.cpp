@@ -129,8 +129,11 @@ void add_compositions(report_section& section, const std::filesystem::path& resu
     std::ranges::move(metric_figures(record, rows), std::back_inserter(section.figures));
     const std::vector<scene_summary> scenes = summarise(rows);
     for (const scene_summary& scene : scenes)
-        section.tables.push_back(
-            {fmt::format("{}_{}", record.name, &scene - scenes.data() + 1), heading_of(scene), table_of(scene, shown)});
+        section.tables.push_back({fmt::format("{}_{}", record.name, &scene - scenes.data() + 1),
+                                  heading_of(scene) +
+                                      "ms/frame and ratio leave out frame 0, the making of stages and that of a first "
+                                      "list; whole_ms and whole_cpu_ms include them",
+                                  table_of(scene, shown)});
 }
 
 /// The report's section on error against run time, of the studies that ran, on triangle pairs or whole scenes. It is
@@ -303,8 +306,8 @@ void require_different(std::span<const measurements> runs) {
     }
 }
 
-/// How the verdicts agree with those of the published run of the same size, an archive; empty if there is none.
-std::string verdict_agreement_with_published(std::span<const measurements> runs, const reproduction& reproduced) {
+/// The judgement of the published run of the same size, an archive, if there is one.
+std::optional<published_run> published_run_beside(std::span<const measurements> runs) {
     const std::string name = is_quick(runs.front().folder()) ? "quick_run.tar.xz" : "full_run.tar.xz";
     const std::filesystem::path archive = std::filesystem::path(AABBLAB_ARCHIVES) / name;
     if (!std::filesystem::exists(archive)) return {};
@@ -317,8 +320,8 @@ std::string verdict_agreement_with_published(std::span<const measurements> runs,
         const auto is_published = [&](const measurements& run) {
             return is_sealed_record(run.folder()) && seal_of_record(run.folder()) == seal_of_record(source.folder);
         };
-        if (std::ranges::all_of(runs, is_published)) return "The results are those of " + published + ".";
-        return agreement_of_verdicts(reproduced.claims, judged(results).claims, published);
+        if (std::ranges::all_of(runs, is_published)) return published_run{.name = published, .claims = {}};
+        return published_run{.name = published, .claims = judged(results).claims};
     } catch (const aabb::input_error& error) {
         note("verdicts are not compared with the published ones: " + std::string(error.what()));
         return {};
@@ -337,14 +340,14 @@ int judge(const std::filesystem::path& out, std::span<const measurements> runs) 
                                     " are of different sizes, quick and full, and cannot be judged together");
     require_different(runs);
     const reproduction reproduced = judged(runs);
-    const std::string verdict_agreement = verdict_agreement_with_published(runs, reproduced);
-    write_reproduction(out, runs, reproduced, sections_of_reproduction(first.folder()), failures, verdict_agreement);
+    const std::optional<published_run> published = published_run_beside(runs);
+    write_reproduction(out, runs, reproduced, sections_of_reproduction(first.folder()), failures, published);
     print(verdict_text(reproduced));
     if (!failures.empty())
         print(fmt::format("\n{} results are wrong; compositions with wrong results have no times:\n", failures.size()));
     for (const std::string& failure : failures) print("  " + failure + "\n");
     print("\nThe report is " + visible((out / "report.html").string()) + "\n");
-    if (!verdict_agreement.empty()) print_paragraph(verdict_agreement);
+    if (published) print_paragraph(agreement_of_verdicts(reproduced.claims, *published));
     return failures.empty() ? 0 : 1;
 }
 

@@ -1,140 +1,44 @@
 module;
 
+#include "about_md.hpp"
 #include "report_css.hpp"
 #include "rule_md.hpp"
+#include "terms_md.hpp"
 
 module aabblab.reproduction;
 
 import aabblab.fmt;
 import aabblab.markup;
 import aabblab.numbers;
-import aabblab.scale;
-import aabblab.svg;
 
 namespace aabblab {
 
 namespace {
 
-// The scale of the plots of all claims' ratios, logarithmic with 1 in the middle.
-const scale claims_scale{0.2, 5, true};
-constexpr double margin = 4;  // at both ends, in percent, for arrows
-
-double x_percent(double ratio) {
-    return margin + (100 - 2 * margin) * claims_scale.place(std::clamp(ratio, claims_scale.from, claims_scale.to));
-}
-
-/// Draws the band of no difference, with 1 in the middle.
-void add_band(svg_picture& picture, double low, double centre, double high, double top, double bottom) {
-    picture.rectangle("band", {low, top, high - low, bottom - top});
-    picture.line("one", {centre, top}, {centre, bottom});
-}
-
-constexpr double first_row = 16;
-constexpr double row_height = 12;
-
-/// Draws the axis of ratios, with its numbers, at the vertical position y.
-void add_axis(svg_picture& picture, double y) {
-    picture.line("axis", {margin, y}, {100 - margin, y});
-    for (const double ratio : {0.25, 0.5, 1., 2., 4.}) {
-        picture.line("axis", {x_percent(ratio), y}, {x_percent(ratio), y + 3});
-        picture.text("", {x_percent(ratio), y + 14}, short_number(ratio), {{"text-anchor", "middle"}});
-    }
-}
-
-/// Draws a value beyond the scale as an arrow at the left or right end of the picture, with the number beside it.
-/// Positions are in percent of the width (x) and in pixels (y), as everywhere in these pictures.
-void add_arrow(svg_picture& picture, bool to_left, double y, double number) {
-    const double back = to_left ? 8 : -8;  // pixels
-    svg_picture head;
-    head.path("", {{{back, -5}, {0, 0}, {back, 5}}}, /*closed=*/true);
-    picture.put({to_left ? 1. : 99., y}, head);
-    picture.text("", {to_left ? margin : 100 - margin, y - 4}, ratio_digits_of(number),
-                 {{"text-anchor", to_left ? "start" : "end"}});
-}
-
-/// Draws a ratio as a disc on its 95 % interval. An arrow shows a limit beyond the scale, or the ratio, if beyond, too.
-void add_interval(svg_picture& picture, const endpoint& e, double y) {
-    const auto& [low, high] = e.range;
-    const bool is_below = low < claims_scale.from;
-    const bool is_above = high > claims_scale.to;
-    picture.line("range", {is_below ? 2 : x_percent(low), y}, {is_above ? 98 : x_percent(high), y});
-    if (claims_scale.from <= e.ratio && e.ratio <= claims_scale.to) picture.disc({x_percent(e.ratio), y}, 4);
-    if (is_below) add_arrow(picture, /*to_left=*/true, y, e.ratio < claims_scale.from ? e.ratio : low);
-    if (is_above) add_arrow(picture, /*to_left=*/false, y, e.ratio > claims_scale.to ? e.ratio : high);
-}
-
-/// A claim's ratios and intervals as SVG, one per row, on a logarithmic scale that is common to all claims.
-std::string interval_picture(std::span<const endpoint> endpoints) {
-    const double axis_y = first_row + row_height * static_cast<double>(endpoints.size());
-    std::string label;
-    svg_picture picture("%");
-    add_band(picture, x_percent(1 / (1 + equivalence_band)), /*centre=*/50, x_percent(1 + equivalence_band), /*top=*/4,
-             axis_y);
-    add_axis(picture, axis_y);
-    for (const endpoint& e : endpoints) {
-        label += (label.empty() ? "ratio " : "; ") + ratio_text(e);
-        add_interval(picture, e, first_row + row_height * static_cast<double>(&e - endpoints.data()));
-    }
-    return picture.in_page("interval", label, axis_y + 16);
-}
-
-/// An SVG picture of the rule by which ratios are judged: example intervals with their outcomes.
-std::string rule_picture() {
-    struct example {
-        double low;
-        double high;
-        std::string_view outcome;
-    };
-    constexpr std::array<example, 5> examples{{{0.45, 0.62, "less"},
-                                               {0.84, 0.98, "less"},
-                                               {0.965, 1.035, "no difference"},
-                                               {1.3, 1.8, "more"},
-                                               {0.72, 1.35, "undecided"}}};
-    // The left part of the picture has the scale, and the right part the words.
-    constexpr double plot_width = 64;  // %
-    const scale shown{.from = 0.4, .to = 2.5, .logarithmic = true};
-    const auto x = [&](double ratio) { return plot_width * shown.place(ratio); };
-    constexpr double row = 26;  // vertical measures, in pixels
-    constexpr double first = 40;
-    constexpr double end = first + row * examples.size() - 8;
-    svg_picture picture("%");
-    add_band(picture, x(1 / (1 + equivalence_band)), plot_width / 2, x(1 + equivalence_band), /*top=*/22, end);
-    picture.text("", {plot_width / 2, 14}, "1", {{"text-anchor", "middle"}});
-    picture.text("", {0, 14}, "\u2190 for the claim");
-    picture.text("", {plot_width, 14}, "against \u2192", {{"text-anchor", "end"}});
-    for (const example& e : examples) {
-        const double y = first + row * static_cast<double>(&e - examples.data());
-        picture.line("range", {x(e.low), y}, {x(e.high), y});
-        picture.disc({x(std::sqrt(e.low * e.high)), y}, 5);
-        picture.text("outcome", {plot_width + 3, y + 5}, e.outcome);
-    }
-    picture.text("", {plot_width / 2, end + 18}, fmt::format("band of \u00b1{:.0f} %", 100 * equivalence_band),
-                 {{"text-anchor", "middle"}});
-    return picture.in_page("rule", "an interval against the band of no difference", end + 26);
-}
-
 struct verdict_word {
-    std::string_view kind;  ///< a class of the style
+    verdict_kind kind;
     std::string_view word;
     std::string_view meaning;
 };
 
-/// The words for a verdict, in the order of `verdict_kind`.
 constexpr verdict_word verdict_words[] = {
-    {"holds", "Holds", "every primary ratio favours the claim"},
-    {"part", "Holds in part", "some primary ratios favour it and some do not; the text after the verdict says where"},
-    {"same", "No difference", "every primary ratio shows no difference"},
-    {"not", "Does not hold", "no primary ratio favours it, and at least one contradicts it"},
-    {"open", "Undecided", "a primary ratio is undecided, and the verdict depends on it"}};
+    {verdict_kind::holds, "Holds", "every primary ratio favours the claim"},
+    {verdict_kind::in_part, "Holds in part",
+     "of the cases that the claim leaves open, some primary ratios favour it and some do not"},
+    {verdict_kind::no_difference, "No difference", "every primary ratio shows no difference"},
+    {verdict_kind::does_not_hold, "Does not hold",
+     "primary ratios refute it: one is enough if the claim speaks of all; of cases that it leaves open, none favours "
+     "it"},
+    {verdict_kind::undecided, "Undecided", "a primary ratio is undecided, and the verdict depends on it"}};
 
-const verdict_word& word_of(verdict_kind verdict) {
-    return verdict_words[static_cast<std::size_t>(verdict)];
+std::string_view word_of(verdict_kind verdict) {
+    return std::ranges::find(verdict_words, verdict, &verdict_word::kind)->word;
 }
 
-/// The paragraphs of rule.md, which is embedded in the program, each joined to one line.
-std::vector<std::string> rule_paragraphs() {
+/// The paragraphs of a text that is embedded in the program, each joined to one line.
+std::vector<std::string> paragraphs_of(std::string_view embedded_text) {
     std::vector<std::string> paragraphs;
-    std::istringstream text{std::string(embedded::rule_md)};
+    std::istringstream text{std::string(embedded_text)};
     bool new_paragraph = true;
     for (std::string line; std::getline(text, line);) {
         if (line.empty())
@@ -151,35 +55,94 @@ std::string paragraph(std::string_view kind, const std::string& markup) {
     return element("p", {{"class", kind}}, markup);
 }
 
-std::string verdict_markup(const claim_result& c, const std::string& sentence) {
-    return element("span", {{"class", "word"}}, std::string(word_of(c.verdict).word) + ".") + " " +
-           markup_text(sentence);
+/// A sentence on the run: when and where, and how much was measured.
+std::string run_text(const provenance& origin) {
+    return fmt::format(
+        "The run: {}, {} size, commit {}, {}, {}. {} rows of {} scenes, each with up to {} seeds; per composition and "
+        "seed up to {} repeats in all, over {} processes. Other machines, compilers and scenes may give other ratios.",
+        origin.date, origin.size, origin.commit, origin.compiler, origin.cpu, grouped(origin.rows), origin.scenes,
+        origin.seeds, origin.repeats, origin.processes);
 }
 
-/// Adds the overview: in HTML a row with a link per claim; in Markdown a table, a sentence per claim, and the figures.
-void add_claim_rows(page& out, const reproduction& reproduced) {
-    std::string rows = "\n";
-    for (const claim_result& c : reproduced.claims) {
-        const std::string text = paragraph("said", markup_text(c.claim)) + paragraph("", verdict_markup(c, c.brief));
-        const std::string measured =
-            c.primaries.empty() ? paragraph("ratio", "not measured")
-                                : paragraph("ratio", ratio_text(c.primaries.front())) + interval_picture(c.primaries);
-        rows += element("a", {{"class", "claim " + std::string(word_of(c.verdict).kind)}, {"href", "#" + c.id}},
-                        element("b", {}, c.id) + element("div", {}, text) + element("div", {}, measured)) +
-                "\n";
-    }
-    out.add_html(element("div", {{"class", "claims"}}, rows) + "\n" +
-                 paragraph("soft",
-                           "Each row gives the paper's claim, the verdict, the first primary ratio with its 95 % "
-                           "interval, and a plot of all primary ratios. All plots share a scale. Ratios left of 1 "
-                           "favour the claim; those in the shaded band make no difference.") +
+/// Adds the first page: what was claimed, what holds, and by how much.
+void add_summary(page& out, const reproduction& reproduced, const provenance& origin) {
+    out.add_html(paragraph("soft", element("a", {{"href", "#ratios"}}, "The ratios that decide") + " \u00b7 " +
+                                       element("a", {{"href", "#contents"}}, "Contents") + " \u00b7 " +
+                                       element("a", {{"href", "#terms"}}, "Terms")) +
                  "\n");
-    out.add_markdown(to_markdown(brief_table(reproduced)) + "\n");
-    for (const claim_result& c : reproduced.claims)
-        out.add_markdown("- " + c.id + ", " + text_of(c.verdict) + ". " + c.sentence + "\n");
-    out.add_markdown("\n");
+    const std::vector<std::string> about = paragraphs_of(embedded::about_md);
+    out.paragraph(about.front());
+    // The last sentence of the headline counts the verdicts; the others state the main results in words.
+    if (!reproduced.headline.empty()) out.paragraph(reproduced.headline.back(), "headline");
+    out.add_html(summary_html(reproduced, origin.published));
+    // README has the first of these tables.
+    for (const table& t : {brief_table(reproduced), summary_table(reproduced, origin.published)})
+        out.add_markdown(to_markdown(t) + "\n");
+    out.paragraph(about.back(), "soft");
+    for (std::size_t i = 0; i + 1 < reproduced.headline.size(); ++i) out.paragraph(reproduced.headline[i]);
+    if (!origin.agreement.empty()) out.paragraph(origin.agreement);
+    for (const std::string& note : origin.notes) out.paragraph("Note: " + note + ".", "soft");
+    out.paragraph(run_text(origin), "soft");
+}
+
+/// Adds the second page: every ratio that decides a claim.
+void add_primaries(page& out, const reproduction& reproduced, const provenance& origin) {
+    out.heading("The ratios that decide", "ratios");
+    out.paragraph(
+        "Left of the line is for the claim, right of it against; bars are 95 % intervals, and the shaded band makes no "
+        "difference. Some claims ask only that something costs no more, so that equal is for them, too.",
+        "soft");
+    out.add_html(primaries_html(reproduced.claims, origin.published));
+    out.add_markdown(to_markdown(primaries_table(reproduced, origin.published)) + "\n");
     for (const figure& f : reproduced.figures)
         out.add_markdown("![" + f.caption + "](figures/" + f.name + ".svg)\n\n" + f.caption + "\n\n");
+}
+
+/// Adds the glossary.
+void add_terms(page& out) {
+    out.heading("Terms", "terms");
+    std::string list;
+    for (const std::string& entry : paragraphs_of(embedded::terms_md)) {
+        const std::size_t colon = entry.find(": ");  // between a term and its meaning
+        list += element("dt", {}, markup_text(entry.substr(0, colon))) +
+                element("dd", {}, markup_text(entry.substr(colon + 2))) + "\n";
+        out.add_markdown("- " + entry + "\n");
+    }
+    out.add_html(element("dl", {{"class", "terms"}}, list) + "\n");
+    out.add_markdown("\n");
+}
+
+/// Adds a claim's section: its verdict in words, the ratios that decide it, figures, tables and configs.
+void add_claim(page& out, const claim_result& c, const provenance& origin) {
+    out.heading(c.id + ": " + c.claim, c.id);
+    if (!c.quote.empty()) {
+        out.add_html(element("blockquote", {}, markup_text(c.quote)) + "\n");
+        out.add_markdown("> " + c.quote + "\n\n");
+    }
+    if (!c.regime.empty()) out.paragraph("Where: " + c.regime + ".", "soft");
+    // The sentence begins with the brief one, on the primary ratios, if both are about the same clauses.
+    const std::size_t split = c.sentence.starts_with(c.brief) ? c.brief.size() : c.sentence.size();
+    const std::string verdict = c.sentence.substr(0, split);
+    out.add_html(paragraph("verdict " + verdict_class(c.verdict),
+                           element("span", {{"class", "word"}}, std::string(word_of(c.verdict)) + ".") + " " +
+                               markup_text(verdict)) +
+                 "\n");
+    out.add_markdown("**" + text_of(c.verdict) + ".** " + verdict + "\n\n");
+    if (const std::string sentence = published_sentence(c, origin.published); !sentence.empty())
+        out.paragraph(sentence);
+    out.paragraph("The ratio: " + c.measured + ".", "soft");
+    out.add_html(primaries_html({&c, 1}, origin.published));
+    if (split + 1 < c.sentence.size()) out.paragraph(c.sentence.substr(split + 1));
+    if (c.evidence != c.sentence) out.paragraph(c.evidence, "soft");
+    for (const figure& f : c.figures) out.add(f);
+    // `judged` inserted the table of all ratios first. It is long, so it is folded and comes last.
+    for (const named_table& t : c.tables)
+        if (&t != c.tables.data()) out.add(t);
+    if (!c.tables.empty()) out.folded("Every ratio", c.tables.front());
+    for (const std::string& experiment : c.experiments)
+        for (const provenance::config& config : origin.configs)
+            if (config.experiment == experiment)
+                out.folded("The config: " + experiment + ".toml", element("pre", {}, markup_text(config.text)));
 }
 
 /// Adds the section on the decision rule: a picture, the meaning of each verdict, rule.md and the null control.
@@ -188,12 +151,12 @@ void add_decision_rule(page& out, const reproduction& reproduced) {
     out.add_html(rule_picture() + "\n");
     std::string words;
     for (const auto& [kind, word, meaning] : verdict_words)
-        words += element("dt", {{"class", kind}}, element("span", {{"class", "word"}}, word)) +
+        words += element("dt", {{"class", verdict_class(kind)}}, element("span", {{"class", "word"}}, word)) +
                  element("dd", {}, meaning) + "\n";
     out.add_html(element("dl", {{"class", "words"}}, words) + "\n");
     out.add_markdown(to_markdown(rule_table()) + "\n");
     std::string text;
-    for (const std::string& rule_paragraph : rule_paragraphs()) {
+    for (const std::string& rule_paragraph : paragraphs_of(embedded::rule_md)) {
         text += paragraph("", markup_text(rule_paragraph)) + "\n";
         out.add_markdown(rule_paragraph + "\n\n");
     }
@@ -232,7 +195,7 @@ table rule_table() {
     return t;
 }
 
-/// Composes the report; further sections come before provenance.
+/// Composes the report: two pages that summarise it, the contents, and the sections.
 page report_of(const reproduction& reproduced, std::span<const report_section> sections, const provenance& origin,
                const std::vector<std::string>& failures) {
     page out("AABB Lab: the paper, reproduced", embedded::report_css);
@@ -242,48 +205,14 @@ page report_of(const reproduction& reproduced, std::span<const report_section> s
         out.add_markdown("**Wrong:** " + failure + ".\n\n");
     }
     out.title("The paper, reproduced");
-    std::string headline;
-    for (const std::string& sentence : reproduced.headline) {
-        headline += paragraph("", markup_text(sentence)) + "\n";
-        out.add_markdown(sentence + "\n\n");
-    }
-    out.add_html(element("div", {{"class", "headline"}}, headline) + "\n");
-    if (!origin.verdict_agreement.empty()) out.paragraph(origin.verdict_agreement);
-    out.paragraph(
-        fmt::format(
-            "\"Research on Collision Detection Algorithm Based on AABB\": its table, its figures and {} claims. C13 "
-            "was made for the method that the paper builds on (Li, Feng and Owen, \"SMB: collision detection based "
-            "on temporal coherence\", 2006). Only the primary ratios of a claim, those before \"Secondary\" in its "
-            "text, decide its verdict. Broad phase means the paper's global search, narrow phase its local detection; "
-            "the scene brownian has drifting cubes. A displacement is how far a moving box moves per frame, in "
-            "brownian at most. A mean spacing is the cube root of the world's volume per box. {}, {} size. Commit {}, "
-            "{}, {}. {} rows of {} scenes, each with up to {} seeds; per composition and seed up to {} repeats in all, "
-            "over {} processes.",
-            reproduced.claims.size(), origin.date, origin.size, origin.commit, origin.compiler, origin.cpu,
-            grouped(origin.rows), origin.scenes, origin.seeds, origin.repeats, origin.processes),
-        "soft");
-    for (const std::string& note : origin.notes) out.paragraph("Note: " + note + ".", "soft");
-    add_claim_rows(out, reproduced);
+    add_summary(out, reproduced, origin);
+    add_primaries(out, reproduced, origin);
+    out.contents();
+    add_terms(out);
     add_decision_rule(out, reproduced);
     out.heading("Under other bands of no difference", "bands");
     out.add(reproduced.bands);
-    for (const claim_result& c : reproduced.claims) {
-        out.heading(c.id + ": " + c.claim, c.id);
-        out.add_html(paragraph("verdict " + std::string(word_of(c.verdict).kind), verdict_markup(c, c.sentence)) +
-                     "\n");
-        out.add_markdown("**" + text_of(c.verdict) + ".** " + c.sentence + "\n\n");
-        if (c.evidence != c.sentence) out.paragraph(c.evidence);
-        out.paragraph("The ratio: " + c.measured + ".", "soft");
-        for (const figure& f : c.figures) out.add(f);
-        // `judged` inserted the table of all ratios first. It is long, so it is folded and comes last.
-        for (const named_table& t : c.tables)
-            if (&t != c.tables.data()) out.add(t);
-        if (!c.tables.empty()) out.folded("Every ratio", c.tables.front());
-        for (const std::string& experiment : c.experiments)
-            for (const provenance::config& config : origin.configs)
-                if (config.experiment == experiment)
-                    out.folded("The config: " + experiment + ".toml", element("pre", {}, markup_text(config.text)));
-    }
+    for (const claim_result& c : reproduced.claims) add_claim(out, c, origin);
     out.heading("Table 1: sizes of nodes", "table1");
     for (const named_table& t : reproduced.tables) out.add(t);
     add_open_choices(out, reproduced);
@@ -293,7 +222,12 @@ page report_of(const reproduction& reproduced, std::span<const report_section> s
         for (const figure& f : section.figures) out.add(f);
         for (const named_table& t : section.tables) out.add(t);
     }
-    out.add_html(element("h2", {{"id", "manifest"}}, "Provenance") + "\n");
+    out.heading("Provenance", "provenance");
+    out.paragraph(
+        "`./aabblab reproduce` measured this and wrote the report. Beside it, endpoints.csv has every ratio, and "
+        "tables "
+        "and figures have files of their own. tests/paper/recompute.py recomputes the verdicts from the rows, "
+        "independently. Each experiment has a manifest: program, processor, system, config and files.");
     for (const provenance::config& config : origin.configs)
         out.folded(config.experiment + "/manifest.json", element("pre", {}, markup_text(config.manifest)));
     return out;

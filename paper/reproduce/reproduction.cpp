@@ -49,18 +49,20 @@ std::string list_of(const std::vector<Named>& entries, std::size_t from = 0) {
 }
 
 /// Sets the macros of a claim, such as `C1.verdict`, which the LaTeX report expands.
-void add_claim(macros& tex, const claim_result& c) {
+void add_claim(macros& tex, const claim_result& c, const std::optional<published_run>& published) {
     const auto set = [&](const char* key, std::string_view text) { tex.set(c.id + "." + key, text); };
     set("claim", c.claim);
     set("measured", c.measured);
     set("verdict", text_of(c.verdict));
     set("sentence", c.sentence);
     set("because", c.evidence == c.sentence ? "" : c.evidence);
+    set("published", published_sentence(c, published));
     tex.set_tex(c.id + ".figures", list_of(c.figures));
     // The first table, which `judged` inserted, has all ratios and belongs to the appendix.
     tex.set_tex(c.id + ".tables", list_of(c.tables, /*from=*/1));
     set("setup", setup_of(c));
-    set("favourable", c.expected == expectation::less ? "below 1" : fmt::format("below {:.2f}", 1 + equivalence_band));
+    set("favourable", fmt::format("below {:.3g}",
+                                  c.expected == expectation::less ? 1 / (1 + equivalence_band) : 1 + equivalence_band));
     const endpoint* const primary = c.primaries.empty() ? nullptr : &c.primaries.front();
     set("condition", primary ? text_of(primary->where) : "-");
     set("ratio", primary ? ratio_digits_of(primary->ratio) : "-");
@@ -95,28 +97,31 @@ table endpoints_of(const reproduction& reproduced) {
     return t;
 }
 
-/// A figure of the first primary ratio of every claim, with its interval, against the band of no difference.
+/// A figure of all primary ratios of every claim with their intervals, against the band of no difference.
 figure verdict_figure(const reproduction& reproduced) {
-    // Smaller ratios would stretch the axis until the band is too narrow to see.
-    constexpr double least_shown = 0.2;
     figure f{.name = "verdicts",
-             .caption = fmt::format("The first primary ratio of every claim with its 95 % interval, and the band of no "
-                                    "difference. Ratios below 1 favour the claim; those below {} are left out.",
-                                    least_shown),
+             .caption =
+                 "The primary ratios of every claim with their 95 % intervals, and the band of no difference. "
+                 "Ratios below 1 favour the claim; where a claim only asks that something costs no more, so do "
+                 "those in the band.",
              .x = {"claim"},
              .y = {"ratio", /*logarithmic=*/true}};
-    series ratios{"primary ratio, 95 % interval", series_style::points};
+    const std::pair<support, const char*> outcomes[] = {{support::favours, "for the claim"},
+                                                        {support::contradicts, "against it"},
+                                                        {support::no_difference, "no difference"},
+                                                        {support::undecided, "undecided"}};
+    for (const auto& [outcome, label] : outcomes) f.lines.push_back({label, series_style::points});
     for (std::size_t i = 0; i < reproduced.claims.size(); ++i) {
         f.x.names.emplace_back(static_cast<double>(i), reproduced.claims[i].id);
-        const std::vector<endpoint>& primaries = reproduced.claims[i].primaries;
-        if (primaries.empty() || primaries.front().ratio < least_shown) continue;
-        const auto& [low, high] = primaries.front().range;
-        ratios.points.push_back({static_cast<double>(i), primaries.front().ratio, low, high});
+        for (const endpoint& e : reproduced.claims[i].primaries) {
+            const auto* const known = std::ranges::find(outcomes, e.corrected, &std::pair<support, const char*>::first);
+            f.lines[static_cast<std::size_t>(known - outcomes)].points.push_back(
+                {static_cast<double>(i), e.ratio, e.range.low, e.range.high});
+        }
     }
-    f.lines = {ratios,
-               {"no difference",
-                series_style::level,
-                {{.x = 0, .y = 1, .low = 1 / (1 + equivalence_band), .high = 1 + equivalence_band}}}};
+    f.lines.push_back({"band of no difference",
+                       series_style::level,
+                       {{.x = 0, .y = 1, .low = 1 / (1 + equivalence_band), .high = 1 + equivalence_band}}});
     return f;
 }
 
@@ -162,9 +167,10 @@ std::string macros_of(const reproduction& reproduced, const provenance& origin,
     for (const std::string& sentence : reproduced.headline) headline += (headline.empty() ? "" : " ") + sentence;
     tex.set("headline", headline);
     tex.set("disturbance", reproduced.disturbance);
+    tex.set("agreement", origin.agreement);
     tex.set("table.bands.caption", reproduced.bands.caption);
     for (const claim_result& c : reproduced.claims) {
-        add_claim(tex, c);
+        add_claim(tex, c, origin.published);
         for (const figure& f : c.figures) tex.set("figure." + f.name + ".caption", f.caption);
         for (const named_table& t : c.tables) tex.set("table." + t.name + ".caption", t.caption);
     }
@@ -223,11 +229,14 @@ provenance provenance_of(const measurements& results, const reproduction& reprod
 /// @param runs of several machines: ratios and verdicts are of all of them, figures and tables of the first
 void write_reproduction(const std::filesystem::path& folder, std::span<const measurements> runs,
                         const reproduction& judged_claims, std::span<const report_section> sections,
-                        const std::vector<std::string>& failures, const std::string& verdict_agreement) {
+                        const std::vector<std::string>& failures, const std::optional<published_run>& published) {
     reproduction reproduced = judged_claims;
     reproduced.figures.push_back(verdict_figure(reproduced));
     provenance origin = provenance_of(runs.front(), reproduced);
-    origin.verdict_agreement = verdict_agreement;
+    if (published) {
+        origin.agreement = agreement_of_verdicts(reproduced.claims, *published);
+        if (!published->claims.empty()) origin.published = published;
+    }
     for (const measurements& other : runs.subspan(1)) {
         const provenance other_origin = provenance_of(other, reproduced);
         origin.notes.push_back("ratios and verdicts are of this run and of " + other.name() + " together (" +
@@ -237,6 +246,9 @@ void write_reproduction(const std::filesystem::path& folder, std::span<const mea
     }
     std::filesystem::create_directories(folder / "tables");
     std::vector<named_table> tables = reproduced.tables;
+    tables.push_back(
+        {"summary", "What is claimed, what holds, and by how much.", summary_table(reproduced, origin.published)});
+    tables.push_back({"primary_ratios", "The ratios that decide.", primaries_table(reproduced, origin.published)});
     tables.push_back({"verdicts", "The verdicts.", verdict_table(reproduced)});
     tables.push_back(reproduced.bands);
     tables.push_back({"rule", "From ratios to the verdict.", rule_table()});
@@ -261,22 +273,21 @@ void write_reproduction(const std::filesystem::path& folder, std::span<const mea
     write_file(folder / "report.html", report.html());
 }
 
-/// Compares the verdicts of two judgements in a sentence: "12 of 13 verdicts agree with …: C5: here holds, there …."
-/// @param other the name of the other judgement
-std::string agreement_of_verdicts(std::span<const claim_result> claims, std::span<const claim_result> other_claims,
-                                  const std::string& other) {
+/// "12 of 13 verdicts agree with the published run: C5: here holds, there holds in part.", or that it is the same run.
+std::string agreement_of_verdicts(std::span<const claim_result> claims, const published_run& published) {
+    if (published.claims.empty()) return "The results are those of " + published.name + ".";
     std::string differing;
     std::size_t agreeing = 0;
     for (const claim_result& c : claims) {
-        const auto counterpart = std::ranges::find(other_claims, c.id, &claim_result::id);
-        const std::string verdict = counterpart == other_claims.end() ? "none" : text_of(counterpart->verdict);
+        const auto counterpart = std::ranges::find(published.claims, c.id, &claim_result::id);
+        const std::string verdict = counterpart == published.claims.end() ? "none" : text_of(counterpart->verdict);
         if (verdict == text_of(c.verdict))
             ++agreeing;
         else
             differing += fmt::format("{} {}: here {}, there {}", differing.empty() ? ":" : ";", c.id,
                                      text_of(c.verdict), verdict);
     }
-    return fmt::format("{} of {} verdicts agree with {}{}.", agreeing, claims.size(), other, differing);
+    return fmt::format("{} of {} verdicts agree with {}{}.", agreeing, claims.size(), published.name, differing);
 }
 
 }  // namespace aabblab
