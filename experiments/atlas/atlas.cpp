@@ -29,10 +29,11 @@ const atlas_candidate* atlas_scene::find(std::string_view label) const {
     return candidate != candidates.end() ? &*candidate : nullptr;
 }
 
-const atlas_candidate* atlas_scene::fastest_if(const std::function<bool(const atlas_candidate&)>& matches) const {
+const atlas_candidate* atlas_scene::fastest_if(const std::function<bool(const atlas_candidate&)>& matches,
+                                               atlas_time time) const {
     const atlas_candidate* fastest = nullptr;
     for (const atlas_candidate& candidate : candidates)
-        if (!candidate.is_automatic && matches(candidate) && (!fastest || candidate.ms() < fastest->ms()))
+        if (!candidate.is_automatic && matches(candidate) && (!fastest || candidate.ms(time) < fastest->ms(time)))
             fastest = &candidate;
     return fastest;
 }
@@ -73,14 +74,14 @@ estimate log_ratio(const atlas_candidate& candidate, const atlas_candidate& base
 
 /// Groups the exact, timed rows of an experiment by scene and by candidate (composition or engine), a time per repeat.
 /// Scenes in which only `auto` was timed are left out, since `auto` cannot win.
-/// @param is_held_out whether the scenes are kept out of fits, to test fitted models
+/// @param is_held_out whether the scenes are outside the map, or kept out of fits
 std::vector<atlas_scene> read_atlas(const std::filesystem::path& folder, bool is_held_out) {
     std::vector<atlas_scene> atlas;
     const std::vector<scene_defaults> defaults = read_scene_defaults(folder);
     std::map<scene_choice, std::size_t> indices;
     for (const row& r : verified_rows(folder)) {
-        const std::optional<double> frame_ms = measured("frame_ms")(r);
-        const std::optional<double> whole_ms = measured("whole_ms")(r);
+        const std::optional<double> frame_ms = measured("frame_cpu_ms")(r);
+        const std::optional<double> whole_ms = measured("whole_cpu_ms")(r);
         if (r.status != "exact" || frame_ms.value_or(0) <= 0 || whole_ms.value_or(0) <= 0) continue;
         const auto [index, is_new] = indices.emplace(r.scene, atlas.size());
         if (is_new) {

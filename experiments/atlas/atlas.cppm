@@ -1,9 +1,9 @@
 /// An atlas of the fastest composition or engine per scene, computed from the rows of experiments, with the regret of
-/// using one of them everywhere, the borders between winners, and verdicts on published statements.
+/// using one of them everywhere, laws of the borders between two of them, and verdicts on published statements. Times
+/// are processor times of the thread.
 export module aabblab.atlas;
 
 import aabb.std;
-import aabblab.calibrate;
 import aabblab.figures;
 import aabblab.measures;
 import aabblab.results;
@@ -33,16 +33,17 @@ struct atlas_candidate {
 
 struct atlas_scene {
     scene_choice scene;
-    bool is_held_out = false;  ///< not in the map, but kept to test models that are fitted to the map
+    bool is_held_out = false;  ///< not in the map, or kept to test a law that is fitted to the others
     scene_measures measures;
     std::vector<atlas_candidate> candidates;  ///< exact ones
     scene_defaults defaults{};                ///< of its parameters when it was run; empty in older results
 
     /// Null if the scene has no such candidate.
     [[nodiscard]] const atlas_candidate* find(std::string_view label) const;
-    /// The one with the least time per frame of those that match, except `auto`, which is no fixed composition; null if
-    /// none matches.
-    [[nodiscard]] const atlas_candidate* fastest_if(const std::function<bool(const atlas_candidate&)>& matches) const;
+    /// The one with the least time of those that match, except `auto`, which is no fixed composition; null if none
+    /// matches.
+    [[nodiscard]] const atlas_candidate* fastest_if(const std::function<bool(const atlas_candidate&)>& matches,
+                                                    atlas_time time = atlas_time::per_frame) const;
     [[nodiscard]] const atlas_candidate& fastest() const {
         return *fastest_if([](const atlas_candidate&) { return true; });
     }
@@ -68,18 +69,59 @@ struct atlas_scene {
 /// The regret of using one of them everywhere, relative to the fastest of each scene, including `auto`.
 [[nodiscard]] table regrets_table(const std::vector<atlas_scene>& atlas, atlas_time time);
 
-/// The value of one parameter, all others equal, at which the fastest of one scene and of the next swap places.
-/// Candidates that differ only in parameters, such as the skin of a Verlet list, count as one, their fastest.
-struct border {
-    std::string before, after, parameter;
-    std::string others;  ///< the other settings of the scene
-    double position = 0;
-    interval range{};  ///< 95 %, clamped to the two scenes
+/// One term of a law: a number computed from the measures of a scene.
+struct border_term {
+    std::string name;
+    double (*value)(const scene_measures& m);
 };
-[[nodiscard]] std::vector<border> borders_of(const std::vector<atlas_scene>& atlas);
-[[nodiscard]] table borders_table(const std::vector<border>& borders);
-/// One row for all borders between the same two candidates along the same parameter.
-[[nodiscard]] table borders_summary(const std::vector<border>& borders);
+
+/// Where two candidates take the same time as one parameter grows, and the law that predicts it. Candidates that differ
+/// only in parameters, such as the skin of a Verlet list, count as one, their fastest.
+struct border_kind {
+    std::string name;           ///< of the config that measures it; that of its unseen scenes ends in "_unseen"
+    std::string before, after;  ///< the strategies that are faster below, and above
+    std::string parameter;      ///< the one that grows
+    atlas_time time;
+    std::vector<border_term> terms;  ///< of the logarithm of the position, besides a constant
+};
+[[nodiscard]] const std::vector<border_kind>& border_kinds();
+
+/// A border among scenes that differ in one parameter only.
+struct border {
+    std::string settings;  ///< the other parameters
+    bool is_unseen = false;
+    /// The value of the parameter; 0 if the candidates that win above win in every scene, infinite if the others do.
+    double position = 0;
+    interval played{};          ///< the least and the greatest value of the parameter
+    std::vector<double> terms;  ///< 1, and the terms of the law in the last scene
+};
+/// The borders of a kind among scenes that were timed to find them; none where a scene has no such measure.
+[[nodiscard]] std::vector<border> borders_of(const border_kind& kind, const std::vector<atlas_scene>& scenes);
+
+/// The logarithm of a border's position as a linear function of terms, by least squares.
+struct border_law {
+    const border_kind* kind = nullptr;
+    std::vector<border> borders{};
+    std::vector<estimate> coefficients{};  ///< of the constant and of the terms
+    std::vector<double> inverse{};         ///< (X'X)^-1 by rows, with the terms of the fitted borders as rows of X
+    double deviation = 0;                  ///< standard deviation of the residuals
+    double degrees = 1;                    ///< of freedom
+
+    /// The logarithm of the position that a new border with these terms has; its `range` is the prediction interval.
+    [[nodiscard]] estimate predicted(std::span<const double> terms) const;
+    /// Whether the 95 % prediction interval contains the position, or reaches beyond the scenes if that does.
+    [[nodiscard]] bool contains(const border& b) const;
+};
+/// The law fitted to those borders that are not unseen and lie among their scenes; none if they do not determine it.
+[[nodiscard]] std::optional<border_law> law_of(const border_kind& kind, std::vector<border> borders);
+/// One row per law: its formula, the factor within which it predicts, and how many unseen borders it contains.
+[[nodiscard]] table laws_table(const std::vector<border_law>& laws);
+/// One row per coefficient, with its 95 % interval.
+[[nodiscard]] table coefficients_table(const std::vector<border_law>& laws);
+/// One row per border: its position and the prediction.
+[[nodiscard]] table borders_table(const std::vector<border_law>& laws);
+/// The measured over the predicted positions, a figure per law.
+[[nodiscard]] std::vector<figure> border_figures(const std::vector<border_law>& laws);
 
 /// One ratio on which the verdict on a statement depends.
 struct judged_ratio {
@@ -90,42 +132,59 @@ struct judged_ratio {
     interval range{};
     support verdict = support::undecided;
 };
+/// A published statement about broad phases.
+struct statement_text {
+    std::string id;
+    std::string source;    ///< author, year, section or file
+    std::string quote;     ///< at most a line of it
+    std::string says;      ///< as it is judged
+    std::string played;    ///< what stands for the algorithms of the source
+    bool is_proxy = true;  ///< whether any of these is not the one that the source describes
+};
 struct judged_statement {
-    std::string id, source, says;
+    statement_text text;
     verdict_kind verdict = verdict_kind::undecided;
     std::vector<judged_ratio> ratios{};
 };
 /// Verdicts on published statements about broad phases, by the same rule as claims of the paper: ratios of times per
 /// frame, geometric means over scenes, decided as one family.
 [[nodiscard]] std::vector<judged_statement> judged_statements(const std::vector<atlas_scene>& atlas);
+/// "holds", or "holds (proxy)".
+[[nodiscard]] std::string verdict_text(const judged_statement& s);
 [[nodiscard]] table statements_table(const std::vector<judged_statement>& judged);
 [[nodiscard]] table ratios_table(const std::vector<judged_statement>& judged);
 [[nodiscard]] std::vector<std::string> labels_in_statements();
 
-/// A linear cost model of the time per frame: the costs of the terms that a scene's measures count, fitted to the
-/// scenes of the map, and the factor by which it is off there and in the scenes held out.
-struct candidate_model {
-    std::string label;
-    std::vector<estimate> costs;  ///< ns per unit of each term
-    accuracy in_map{};
-    accuracy held_out{};
-};
-[[nodiscard]] std::vector<candidate_model> models_of(const std::vector<atlas_scene>& atlas);
-[[nodiscard]] table models_table(const std::vector<candidate_model>& models);
-[[nodiscard]] table costs_table(const std::vector<candidate_model>& models);
-/// The regret of choosing the candidate with the least predicted time, in each held-out scene.
-[[nodiscard]] std::vector<double> regrets_of_models(const std::vector<atlas_scene>& atlas,
-                                                    const std::vector<candidate_model>& models);
-
 [[nodiscard]] std::vector<figure> atlas_figures(const std::vector<atlas_scene>& atlas);
 
 /// Writes the figures, atlas.md and atlas.html to the folder, and as CSV every table, also those that the page omits.
-void write_atlas(const std::filesystem::path& folder, const std::vector<atlas_scene>& atlas);
+void write_atlas(const std::filesystem::path& folder, const std::vector<atlas_scene>& atlas,
+                 const std::vector<border_law>& laws);
 
 }  // namespace aabblab
 
 // Shared by the units of the module.
 namespace aabblab {
+
+using scene_filter = std::function<bool(const atlas_scene&)>;
+
+/// A ratio of times over a set of scenes: of a candidate, expected to be the faster one, to another, its baseline.
+struct stated_ratio {
+    std::string where, candidate, baseline;
+    scene_filter scenes;
+    /// A divisor of the ratio, if set: the same ratio in these scenes, for statements of what a candidate suffers from.
+    scene_filter reference_scenes = nullptr;
+    expectation expected = expectation::less;
+    double band = equivalence_band;  // of no difference: 0.05 for 1/1.05 to 1.05, 1 for 1/2 to 2
+};
+
+struct statement {
+    statement_text text;
+    std::vector<stated_ratio> ratios;
+};
+
+/// Published statements on broad phases, each with the ratios of times that decide it.
+[[nodiscard]] const std::vector<statement>& statements();
 
 /// All labels, in the order of their first appearance.
 [[nodiscard]] inline std::vector<std::string> labels_of(const std::vector<atlas_scene>& atlas) {

@@ -1,18 +1,33 @@
-module;
-
-#include <random>
-
 module aabblab.atlas;
 
 import aabb.policy;
-import aabblab.fmt;
-import aabblab.numbers;
 
 namespace aabblab {
 
 namespace {
 
-constexpr std::array<std::string_view, 5> parameters{"objects", "displacement", "density", "ratio", "moving"};
+/// Of 1 + p, with p pairs per box: without a list, a frame costs a search per box; with one, a test per listed pair,
+/// and a search whenever boxes have moved by the skin (Chialvo and Debenedetti 1990). More pairs favour the search.
+double log_of_tested_boxes(const scene_measures& m) {
+    return std::log1p(m.pairs_per_object);
+}
+
+/// Of the longest edge over the median one. Where sizes differ, most pairs have a large box, to whose pairs the skin
+/// adds few, so that lists are worth their cost for longer.
+double log_of_size_ratio(const scene_measures& m) {
+    return std::log(m.boxes.size_ratio.value_or(1));
+}
+
+/// Of the inversions per box and frame over the two thirds power of the number of boxes n, on which they do not depend:
+/// a box passes those in its displacement, of n per n^(1/3) mean spacings along the axis.
+double log_of_inversions(const scene_measures& m) {
+    const double inversions = m.motion ? m.motion->inversions : 0;
+    return std::log(inversions) - 2.0 / 3 * std::log(static_cast<double>(m.objects));
+}
+
+double squared_log_of_inversions(const scene_measures& m) {
+    return log_of_inversions(m) * log_of_inversions(m);
+}
 
 /// The settings of a scene without one parameter: scenes in which these agree differ in that parameter only.
 std::string settings_without(const scene_choice& scene, std::string_view parameter) {
@@ -21,117 +36,94 @@ std::string settings_without(const scene_choice& scene, std::string_view paramet
     return settings_text(others);
 }
 
-/// The fraction of the way between two scenes at which two candidates take the same time, by linear interpolation of
-/// the logarithm of their ratio. Its 95 % interval is that of lines whose ends are drawn with their errors.
-/// @param from the logarithm at the first scene, which the first candidate wins: below 0
-/// @param to the logarithm at the second scene: above 0
-std::pair<double, interval> crossing(const estimate& from, const estimate& to) {
-    // A line from a at 0 to b at 1 is 0 at a / (a - b).
-    const auto share = [](double a, double b) { return a == b ? 0.5 : std::clamp(a / (a - b), 0.0, 1.0); };
-    constexpr std::size_t draws = 2000;
-    std::mt19937_64 random(1);
-    const auto drawn = [&](const estimate& e) {
-        // The sum of twelve uniform numbers is close to normal, and reproducible with every library.
-        double sum = -6;
-        for (int i = 0; i < 12; ++i) sum += static_cast<double>(random() >> 11U) * 0x1p-53;
-        return e.value + sum * e.error;
-    };
-    std::vector<double> shares;
-    for (std::size_t i = 0; i < draws; ++i) {
-        const double a = drawn(from), b = drawn(to);
-        // Clamp to an end if one candidate is ahead at both.
-        shares.push_back(a >= 0 ? 0 : b <= 0 ? 1 : share(a, b));
-    }
-    std::ranges::sort(shares);
-    constexpr std::size_t tail = draws / 40;  // 2.5 %
-    return {share(from.value, to.value), {shares[tail], shares[draws - 1 - tail]}};
-}
+/// A scene of a row: the parameter that grows along it, and how the candidates compare.
+struct place {
+    double value = 0;
+    double log_ratio = 0;  ///< of the time of those that are faster below over that of the others
+    const atlas_scene* scene = nullptr;
+};
 
 /// The fastest candidate with these strategies, whatever their parameters; null if the scene has none.
-const atlas_candidate* fastest_of(const atlas_scene& scene, const std::string& family) {
-    return scene.fastest_if([&](const atlas_candidate& candidate) { return family_of(candidate.label) == family; });
+const atlas_candidate* fastest_of(const atlas_scene& scene, const std::string& family, atlas_time time) {
+    return scene.fastest_if([&](const atlas_candidate& candidate) { return family_of(candidate.label) == family; },
+                            time);
 }
 
-/// The value at which the winners of two scenes, which differ in one parameter, take the same time, interpolated along
-/// its logarithm. None if the same strategies win both, or if a winner was not timed in both.
-std::optional<border> border_between(const atlas_scene& from, const atlas_scene& to, std::string_view parameter) {
-    const atlas_candidate& first_winner = from.fastest();
-    const atlas_candidate& second_winner = to.fastest();
-    const std::string before = family_of(first_winner.label), after = family_of(second_winner.label);
-    if (before == after) return std::nullopt;
-    const atlas_candidate* second_at_first = fastest_of(from, after);
-    const atlas_candidate* first_at_second = fastest_of(to, before);
-    if (!second_at_first || !first_at_second) return std::nullopt;
-    const double log_from = std::log(from.number(parameter));
-    const double log_length = std::log(to.number(parameter)) - log_from;
-    if (!std::isfinite(log_from)) return std::nullopt;
-    // Logarithms of the first winner's time over the second's, at either scene.
-    const estimate ratio_at_first = log_ratio_in(from, first_winner, *second_at_first);
-    const estimate ratio_at_second = log_ratio_in(to, *first_at_second, second_winner);
-    if (!ratio_at_first.is_known() || !ratio_at_second.is_known()) return std::nullopt;
-    const auto [share, range] = crossing(ratio_at_first, ratio_at_second);
-    return border{before,
-                  after,
-                  std::string(parameter),
-                  from.scene.kind + " " + settings_without(from.scene, parameter),
-                  std::exp(log_from + share * log_length),
-                  {std::exp(log_from + range.low * log_length), std::exp(log_from + range.high * log_length)}};
+/// The scene's place in its row; none if the candidates were not both timed in it.
+std::optional<place> place_of(const border_kind& kind, const atlas_scene& scene) {
+    const atlas_candidate* before = fastest_of(scene, kind.before, kind.time);
+    const atlas_candidate* after = fastest_of(scene, kind.after, kind.time);
+    const double value = scene.number(kind.parameter);
+    if (!before || !after || !(value > 0)) return std::nullopt;
+    return place{value, std::log(before->ms(kind.time) / after->ms(kind.time)), &scene};
 }
 
-/// The logarithm of the position of a border, with the error that its 95 % interval implies.
-estimate log_position_of(const border& b) {
-    constexpr double errors_in_interval = 2 * 1.96;
-    constexpr double many_degrees = 1000;
-    return {std::log(b.position), std::log(b.range.high / b.range.low) / errors_in_interval, many_degrees};
+/// The number of places below the border. Noise may let the ratio cross 1 several times: the border is where the ratios
+/// on the wrong side of 1 are the least, as a sum of logarithms.
+std::size_t places_below(std::span<const place> row) {
+    double wrong = 0;
+    for (const place& p : row) wrong += std::max(0.0, -p.log_ratio);
+    double least = wrong;
+    std::size_t below = 0;
+    for (std::size_t i = 0; i < row.size(); ++i) {
+        wrong += row[i].log_ratio;  // place i moves below: it is wrong above 0 instead of below 0
+        if (wrong >= least) continue;
+        least = wrong;
+        below = i + 1;
+    }
+    return below;
+}
+
+/// The value at which the ratio is 1, interpolated between the logarithms of both sides.
+double position_in(std::span<const place> row) {
+    const std::size_t below = places_below(row);
+    if (below == 0) return 0;
+    if (below == row.size()) return std::numeric_limits<double>::infinity();
+    const place& from = row[below - 1];
+    const place& to = row[below];
+    // The logarithms are below 0 at `from` and not at `to`, otherwise another split would be less wrong.
+    const double share = from.log_ratio / (from.log_ratio - to.log_ratio);
+    return from.value * std::pow(to.value / from.value, share);
 }
 
 }  // namespace
 
-/// The borders along each parameter: between successive scenes of the map whose other parameters are all equal.
-std::vector<border> borders_of(const std::vector<atlas_scene>& atlas) {
+const std::vector<border_kind>& border_kinds() {
+    static const std::vector<border_kind> kinds{
+        // The whole time: the first frame makes the first list.
+        {"list_borders",
+         "neighbour_list + bucket + columns + simd",
+         "bucket + columns + simd",
+         "displacement",
+         atlas_time::whole_run,
+         {{"ln(1 + p)", log_of_tested_boxes}, {"ln r", log_of_size_ratio}}},
+        // Insertion sort pays i n^(2/3) inversions per box, radix sort a fixed cost per box and one per sort. Where
+        // these are equal, n falls as i^(-3/2) if the former decides, and as i^(-3/5) if the latter does: a curve, here
+        // to second order.
+        {"sort_borders",
+         "insertion + simd",
+         "radix + simd",
+         "objects",
+         atlas_time::per_frame,
+         {{"ln i", log_of_inversions}, {"(ln i)^2", squared_log_of_inversions}}}};
+    return kinds;
+}
+
+/// A border for each row of scenes whose parameters are equal but one. The terms are those of its last scene, which has
+/// the most boxes if their number grows, so that its measures have the least sampling error.
+std::vector<border> borders_of(const border_kind& kind, const std::vector<atlas_scene>& scenes) {
+    std::map<std::pair<bool, std::string>, std::vector<place>> rows;
+    for (const atlas_scene& scene : scenes)
+        if (const std::optional<place> p = place_of(kind, scene))
+            rows[{scene.is_held_out, settings_without(scene.scene, kind.parameter)}].push_back(*p);
     std::vector<border> borders;
-    for (const std::string_view parameter : parameters) {
-        std::map<std::string, std::vector<const atlas_scene*>> by_others;
-        for (const atlas_scene& scene : atlas)
-            if (!scene.is_held_out && !std::isnan(scene.number(parameter)))
-                by_others[settings_without(scene.scene, parameter)].push_back(&scene);
-        for (auto& [others, scenes] : by_others) {
-            std::ranges::stable_sort(scenes, {}, [&](const atlas_scene* s) { return s->number(parameter); });
-            for (std::size_t i = 1; i < scenes.size(); ++i)
-                if (auto b = border_between(*scenes[i - 1], *scenes[i], parameter)) borders.push_back(*std::move(b));
-        }
+    for (auto& [key, row] : rows) {
+        std::ranges::sort(row, {}, &place::value);
+        border b{key.second, key.first, position_in(row), {row.front().value, row.back().value}, {1.0}};
+        for (const border_term& term : kind.terms) b.terms.push_back(term.value(row.back().scene->measures));
+        if (std::ranges::all_of(b.terms, [](double t) { return std::isfinite(t); })) borders.push_back(std::move(b));
     }
     return borders;
-}
-
-table borders_table(const std::vector<border>& borders) {
-    table t = empty_table({"before", "after", "along"}, {"at", "low", "high"}, {"others"});
-    for (const border& b : borders)
-        t.rows.push_back({b.before, b.after, b.parameter, fmt::format("{:.4g}", b.position),
-                          fmt::format("{:.4g}", b.range.low), fmt::format("{:.4g}", b.range.high), b.others});
-    return t;
-}
-
-/// One row per parameter and pair of winners, the most frequent first: the number of borders and their values.
-table borders_summary(const std::vector<border>& borders) {
-    std::map<std::tuple<std::string, std::string, std::string>, std::vector<const border*>> by_winners;
-    for (const border& b : borders) by_winners[{b.parameter, b.before, b.after}].push_back(&b);
-    std::vector<std::vector<const border*>> groups;
-    for (const auto& [key, group] : by_winners) groups.push_back(group);
-    std::ranges::stable_sort(groups, [](const auto& a, const auto& b) { return a.size() > b.size(); });
-    table t = empty_table({"along", "fastest before", "fastest after"}, {"borders", "at", "95 %", "from", "to"});
-    for (const std::vector<const border*>& group : groups) {
-        std::vector<estimate> log_positions;
-        for (const border* b : group) log_positions.push_back(log_position_of(*b));
-        const auto [low, high] = std::ranges::minmax(group, {}, &border::position);
-        const estimate mean = mean_of(log_positions);
-        const border& first = *group.front();
-        t.rows.push_back({first.parameter, first.before, first.after, grouped(group.size()),
-                          fmt::format("{:.3g}", std::exp(mean.value)),
-                          fmt::format("{:.3g}-{:.3g}", std::exp(mean.range().low), std::exp(mean.range().high)),
-                          fmt::format("{:.3g}", low->position), fmt::format("{:.3g}", high->position)});
-    }
-    return t;
 }
 
 }  // namespace aabblab

@@ -61,7 +61,8 @@ table cells_table(const std::vector<atlas_scene>& atlas) {
     table t = empty_table({"scene", "parameters"},
                           {"pairs_an_object", "inversions", "at_rest", "clustering", "size_ratio"}, {"fastest"});
     const column second_name{.name = "second", .is_number = false};
-    t.columns.insert(t.columns.end(), {{"frame_ms"}, second_name, {"second_ratio"}, {"second_low"}, {"second_high"}});
+    t.columns.insert(t.columns.end(),
+                     {{"frame_cpu_ms"}, second_name, {"second_ratio"}, {"second_low"}, {"second_high"}});
     t.columns.push_back({"auto_ratio"});
     for (const atlas_scene& scene : atlas) {
         const atlas_candidate& best = scene.fastest();

@@ -22,15 +22,20 @@ struct atlas_request {
     }
 };
 
+struct measured_results {
+    std::vector<atlas_scene> scenes;
+    std::vector<border_law> laws;
+};
+
 /// Reads the measured scenes of an atlas, or of the one in a reproduction's report, and notes unfinished parts.
-std::vector<atlas_scene> existing_atlas(const results_source& source) {
+measured_results existing_atlas(const results_source& source) {
     verify_record(source.folder);
     std::filesystem::path parts = source.folder;
     std::vector<atlas_scene> atlas = measured_atlas(parts);
     if (atlas.empty()) atlas = measured_atlas(parts = folder_of_atlas(source.folder));
     if (atlas.empty()) throw aabb::input_error("there are no results of an atlas in " + source.name);
     for (const std::string& missing : unfinished_parts(parts)) note(missing);
-    return atlas;
+    return {std::move(atlas), measured_laws(parts)};
 }
 
 /// Measures the atlas, or with --judge reads results, writes its maps, and prints which candidate is the fastest where.
@@ -46,21 +51,24 @@ int run(const atlas_request& request) {
     results_sources sources(names);
     if (names.empty()) sources.add(out);
     const results_source& source = sources.list().front();
-    std::vector<atlas_scene> atlas;
+    measured_results measured;
     // An archive is read from an unpacked copy, but messages have the archive's name.
     (void)sources.run_with_source_names([&] {
-        atlas = existing_atlas(source);
+        measured = existing_atlas(source);
         return 0;
     });
-    write_atlas(out, atlas);
+    const std::vector<atlas_scene>& atlas = measured.scenes;
+    write_atlas(out, atlas, measured.laws);
     print_paragraph(
-        "How often each candidate is the fastest, by time per frame after the first; shown in: scenes where the second "
-        "is slower beyond noise; as fast in: scenes where another is faster, but not beyond noise");
+        "How often each candidate is the fastest, by processor time per frame after the first; shown in: scenes where "
+        "the second is slower beyond noise; as fast in: scenes where another is faster, but not beyond noise");
     print(to_text(winners_table(atlas), output_width()) + "\n");
-    print("Time per frame after the first, relative to the fastest candidate of each scene\n" +
+    print("Processor time per frame after the first, relative to the fastest candidate of each scene\n" +
           to_text(regrets_table(atlas, atlas_time::per_frame), output_width()) + "\n");
+    if (!measured.laws.empty())
+        print("Where two candidates take the same time\n" + to_text(laws_table(measured.laws), output_width()) + "\n");
     for (const judged_statement& s : judged_statements(atlas))
-        print_paragraph(fmt::format("{}: {} Here: {}. ({})", s.id, s.says, text_of(s.verdict), s.source));
+        print_paragraph(fmt::format("{}: {} Here: {}. ({})", s.text.id, s.text.says, verdict_text(s), s.text.source));
     print("\nMaps, borders and every ratio are in " + visible((out / "atlas.html").string()) + "\n");
     return failures.empty() ? 0 : 1;
 }

@@ -57,6 +57,8 @@ std::vector<std::string> measure_study(const error_study& study, const std::file
 
 /// The atlas of the results in the folder, which may be incomplete; empty if there are none.
 [[nodiscard]] std::vector<atlas_scene> measured_atlas(const std::filesystem::path& folder);
+/// The laws of borders that the results in the folder determine.
+[[nodiscard]] std::vector<border_law> measured_laws(const std::filesystem::path& folder);
 
 /// The results of a suite of `validate`, for the report of `reproduce`.
 struct suite_report {
