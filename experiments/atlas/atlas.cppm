@@ -114,6 +114,12 @@ struct border_law {
 };
 /// The law fitted to those borders that are not unseen and lie among their scenes; none if they do not determine it.
 [[nodiscard]] std::optional<border_law> law_of(const border_kind& kind, std::vector<border> borders);
+/// What the letters in formulas stand for.
+inline constexpr std::string_view legend_of_laws =
+    "p is the number of pairs per box, r the longest edge over the median one, i the inversions per box and frame over "
+    "the two thirds power of the number of boxes.";
+/// The law in words, and how many unseen borders it contains.
+[[nodiscard]] std::string sentence_of(const border_law& law);
 /// One row per law: its formula, the factor within which it predicts, and how many unseen borders it contains.
 [[nodiscard]] table laws_table(const std::vector<border_law>& laws);
 /// One row per coefficient, with its 95 % interval.
@@ -169,7 +175,7 @@ namespace aabblab {
 using scene_filter = std::function<bool(const atlas_scene&)>;
 
 /// A ratio of times over a set of scenes: of a candidate, expected to be the faster one, to another, its baseline.
-struct stated_ratio {
+struct statement_ratio {
     std::string where, candidate, baseline;
     scene_filter scenes;
     /// A divisor of the ratio, if set: the same ratio in these scenes, for statements of what a candidate suffers from.
@@ -180,7 +186,7 @@ struct stated_ratio {
 
 struct statement {
     statement_text text;
-    std::vector<stated_ratio> ratios;
+    std::vector<statement_ratio> ratios;
 };
 
 /// Published statements on broad phases, each with the ratios of times that decide it.

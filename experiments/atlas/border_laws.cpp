@@ -49,6 +49,26 @@ std::string formula_of(const border_law& law) {
     return text;
 }
 
+/// How a law's predictions compare with borders.
+struct law_check {
+    std::size_t fitted = 0, unseen = 0;
+    std::size_t inside = 0;  ///< of the unseen ones
+    double factor = 1;       ///< from a prediction to the end of its interval, the median over all borders
+};
+law_check check_of(const border_law& law) {
+    law_check check;
+    std::vector<double> factors;
+    for (const border& b : law.borders) {
+        const predicted_position p = prediction(law, b);
+        factors.push_back(p.high / p.value);
+        check.fitted += is_fitted(b);
+        check.unseen += b.is_unseen;
+        check.inside += b.is_unseen && law.contains(b);
+    }
+    check.factor = quartiles_of(factors).median;
+    return check;
+}
+
 }  // namespace
 
 /// For a new observation the variance of the prediction is s² (1 + x' (X'X)^-1 x), and Student's t has the degrees of
@@ -94,23 +114,23 @@ std::optional<border_law> law_of(const border_kind& kind, std::vector<border> bo
     return law;
 }
 
+/// One sentence for terminals.
+std::string sentence_of(const border_law& law) {
+    const law_check check = check_of(law);
+    return fmt::format(
+        "{} is faster than {} up to {}, within a factor of {:.2f}. {} of {} unseen borders lie inside the prediction.",
+        law.kind->before, law.kind->after, formula_of(law), check.factor, grouped(check.inside), grouped(check.unseen));
+}
+
 table laws_table(const std::vector<border_law>& laws) {
     table t = empty_table({"faster below", "faster above", "law"},
                           {"borders", "within a factor of", "unseen", "of these inside", "%"});
     for (const border_law& law : laws) {
-        std::size_t unseen = 0, inside = 0;
-        std::vector<double> factors;  // from the prediction to the end of its interval
-        for (const border& b : law.borders) {
-            const predicted_position p = prediction(law, b);
-            factors.push_back(p.high / p.value);
-            unseen += b.is_unseen;
-            inside += b.is_unseen && law.contains(b);
-        }
-        const auto fitted = static_cast<std::size_t>(std::ranges::count_if(law.borders, is_fitted));
-        t.rows.push_back(
-            {law.kind->before, law.kind->after, formula_of(law), grouped(fitted),
-             fmt::format("{:.2f}", quartiles_of(factors).median), grouped(unseen), grouped(inside),
-             unseen ? fmt::format("{:.0f}", 100.0 * static_cast<double>(inside) / static_cast<double>(unseen)) : ""});
+        const law_check check = check_of(law);
+        const double share = 100.0 * static_cast<double>(check.inside) / static_cast<double>(check.unseen);
+        t.rows.push_back({law.kind->before, law.kind->after, formula_of(law), grouped(check.fitted),
+                          fmt::format("{:.2f}", check.factor), grouped(check.unseen), grouped(check.inside),
+                          check.unseen ? fmt::format("{:.0f}", share) : ""});
     }
     return t;
 }

@@ -13,7 +13,7 @@ struct measured_ratio {
 };
 
 /// The ratio of two candidates' times, a geometric mean over matching scenes, which count as independent.
-measured_ratio ratio_in(const std::vector<atlas_scene>& atlas, const stated_ratio& r, const scene_filter& matches) {
+measured_ratio ratio_in(const std::vector<atlas_scene>& atlas, const statement_ratio& r, const scene_filter& matches) {
     std::vector<estimate> logs;
     for (const atlas_scene& scene : atlas) {
         if (!matches(scene)) continue;
@@ -26,7 +26,7 @@ measured_ratio ratio_in(const std::vector<atlas_scene>& atlas, const stated_rati
 }
 
 /// The ratio that a statement speaks of, divided by that in the reference scenes; of no scenes if one is unknown.
-measured_ratio measure(const std::vector<atlas_scene>& atlas, const stated_ratio& r) {
+measured_ratio measure(const std::vector<atlas_scene>& atlas, const statement_ratio& r) {
     measured_ratio ratio = ratio_in(atlas, r, r.scenes);
     if (!r.reference_scenes || ratio.scenes == 0) return ratio;
     const measured_ratio reference = ratio_in(atlas, r, r.reference_scenes);
@@ -42,7 +42,7 @@ std::vector<judged_statement> judged_statements(const std::vector<atlas_scene>& 
     std::vector<tested> evidence;
     for (const statement& s : statements()) {
         judged_statement& entry = verdicts.emplace_back(s.text);
-        for (const stated_ratio& r : s.ratios) {
+        for (const statement_ratio& r : s.ratios) {
             const measured_ratio ratio = measure(atlas, r);
             if (ratio.scenes == 0 || !ratio.log.is_known()) continue;
             const interval range = ratio.log.range();
@@ -54,7 +54,9 @@ std::vector<judged_statement> judged_statements(const std::vector<atlas_scene>& 
     const std::vector<double> levels = levels_together(evidence);
     std::size_t i = 0;  // over the ratios of all statements
     for (judged_statement& s : verdicts) {
-        std::vector<support> endpoints;
+        // A ratio that was not measured is undecided: the others alone do not decide the statement.
+        const std::size_t stated = statements()[static_cast<std::size_t>(&s - verdicts.data())].ratios.size();
+        std::vector<support> endpoints(stated - s.ratios.size(), support::undecided);
         for (judged_ratio& r : s.ratios) {
             r.verdict = support_of(evidence[i].expected, evidence[i].p, levels[i]);
             endpoints.push_back(r.verdict);

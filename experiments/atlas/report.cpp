@@ -44,10 +44,11 @@ std::vector<section> sections_of(const std::vector<atlas_scene>& atlas, const st
         {"Borders",
          "A border is the value of one parameter, all others equal, at which two candidates take the same time, "
          "interpolated between the logarithms of their ratios. A law predicts it by least squares from terms of the "
-         "scene: p is the number of pairs per box, r the longest edge over the median one, i the inversions per box "
-         "and frame over the two thirds power of the number of boxes. The factor is that of the 95 % prediction "
-         "interval, by Student's t. Unseen borders are of scenes drawn with another seed, to which no law was fitted. "
-         "A Verlet list's time includes that of the first frame. borders.csv has each border with its interval.",
+         "scene: " +
+             std::string(legend_of_laws) +
+             " The factor is that of the 95 % prediction interval, by Student's t. Unseen borders are of scenes drawn "
+             "with another seed, to which no law was fitted. A Verlet list's time includes that of the first frame. "
+             "borders.csv has each border with its interval.",
          "border_laws", laws_table(laws)});
     sections.push_back({.file = "border_coefficients", .content = coefficients_table(laws), .is_shown = false});
     sections.push_back({.file = "borders", .content = borders_table(laws), .is_shown = false});

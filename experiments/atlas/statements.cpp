@@ -63,9 +63,9 @@ scene_filter kind_is(std::string kind) {
 }
 
 /// The ratio of a candidate to a baseline for each pair of number of boxes and displacement.
-std::vector<stated_ratio> by_motion(const std::string& candidate, const std::string& baseline,
-                                    std::initializer_list<std::pair<double, double>> cases) {
-    std::vector<stated_ratio> ratios;
+std::vector<statement_ratio> by_motion(const std::string& candidate, const std::string& baseline,
+                                       std::initializer_list<std::pair<double, double>> cases) {
+    std::vector<statement_ratio> ratios;
     for (const auto& [objects, displacement] : cases)
         ratios.push_back({fmt::format("{} boxes, by {:g}", grouped(static_cast<std::uint64_t>(objects)), displacement),
                           candidate, baseline, moved(objects, displacement)});
@@ -73,10 +73,10 @@ std::vector<stated_ratio> by_motion(const std::string& candidate, const std::str
 }
 
 /// The ratio of a candidate to a baseline for each number of boxes.
-std::vector<stated_ratio> by_count(const std::string& candidate, const std::string& baseline,
-                                   std::initializer_list<double> sizes, expectation expected = expectation::less,
-                                   double band = equivalence_band) {
-    std::vector<stated_ratio> ratios;
+std::vector<statement_ratio> by_count(const std::string& candidate, const std::string& baseline,
+                                      std::initializer_list<double> sizes, expectation expected = expectation::less,
+                                      double band = equivalence_band) {
+    std::vector<statement_ratio> ratios;
     for (const double objects : sizes)
         ratios.push_back({grouped(static_cast<std::uint64_t>(objects)) + " boxes", candidate, baseline, boxes(objects),
                           /*reference_scenes=*/nullptr, expected, band});
@@ -162,7 +162,7 @@ const std::vector<statement>& statements() {
           "Embree's trees on a processor for the source's on a graphics card", /*is_proxy=*/true},
          by_motion("embree", "embree_refit",
                    {{1000, 0.001}, {1000, 0.1}, {1000, 1}, {10000, 0.001}, {10000, 0.1}, {10000, 1}})},
-        {{"B10", "Bittle 2017, dyn4j 3.3, package collision.broadphase", "Generally, they have similar performance.",
+        {{"B10", "Bittle 2016, dyn4j 3.3, package collision.broadphase", "Generally, they have similar performance.",
           "A sweep along x and a dynamic tree take about the same time: the tree at most twice as long.",
           "insertion sort for dyn4j's red-black tree of lower ends; Bullet's tree for dyn4j's; in space",
           /*is_proxy=*/true},
@@ -221,7 +221,7 @@ const std::vector<statement>& statements() {
 std::vector<std::string> labels_in_statements() {
     std::vector<std::string> labels;
     for (const statement& s : statements())
-        for (const stated_ratio& r : s.ratios)
+        for (const statement_ratio& r : s.ratios)
             for (const std::string& label : {r.candidate, r.baseline})
                 if (std::ranges::find(labels, label) == labels.end()) labels.push_back(label);
     return labels;

@@ -65,8 +65,9 @@ int run(const atlas_request& request) {
     print(to_text(winners_table(atlas), output_width()) + "\n");
     print("Processor time per frame after the first, relative to the fastest candidate of each scene\n" +
           to_text(regrets_table(atlas, atlas_time::per_frame), output_width()) + "\n");
-    if (!measured.laws.empty())
-        print("Where two candidates take the same time\n" + to_text(laws_table(measured.laws), output_width()) + "\n");
+    for (const border_law& law : measured.laws) print_paragraph(sentence_of(law));
+    if (!measured.laws.empty()) print_paragraph("Here " + std::string(legend_of_laws));
+    print("\n");
     for (const judged_statement& s : judged_statements(atlas))
         print_paragraph(fmt::format("{}: {} Here: {}. ({})", s.text.id, s.text.says, verdict_text(s), s.text.source));
     print("\nMaps, borders and every ratio are in " + visible((out / "atlas.html").string()) + "\n");

@@ -226,6 +226,8 @@ TEST_CASE("A law is a least-squares fit, and predicts with Student's t") {
     REQUIRE(table.rows.size() == 1);
     CHECK(table.rows[0][2] == "ln objects = 0.0500 + 0.990 x");
     CHECK(table.rows[0][3] == "5");
+    CHECK(holds(sentence_of(*law), "up to ln objects = 0.0500 + 0.990 x, within"));
+    CHECK(holds(sentence_of(*law), "0 of 1 unseen borders"));
     CHECK(std::vector(table.rows[0].begin() + 5, table.rows[0].end()) == std::vector<std::string>{"1", "0", "0"});
     const aabblab::table rows = aabblab::borders_table({*law});
     REQUIRE(rows.rows.size() == borders.size());
@@ -321,6 +323,10 @@ TEST_CASE("A statement is decided by its own ratios, and undecided without them"
     CHECK(verdict("B1") == aabblab::verdict_kind::undecided);
     for (atlas_scene& scene : atlas) std::swap(scene.candidates[0].frame_ms, scene.candidates[1].frame_ms);
     CHECK(verdict("B9") == aabblab::verdict_kind::holds);
+    // Ratios that were not measured do not decide: those for 1,000 boxes alone favour it.
+    std::erase_if(atlas, [](const atlas_scene& scene) { return scene.number("objects") == 10000; });
+    CHECK(judged(atlas, "B9").ratios.size() == 3);
+    CHECK(verdict("B9") == aabblab::verdict_kind::undecided);
 }
 
 TEST_CASE("The interval of a ratio of single repeats comes from the repeats of other candidates") {
@@ -378,8 +384,12 @@ TEST_CASE_METHOD(in_folder, "atlas --judge draws maps from existing results and 
     CHECK(holds(mapped.err, "list_borders_unseen has not been run yet"));
     CHECK(lines_of(bytes_of_file(folder / "map/borders.csv")).size() == 1 + 6);
     CHECK(lines_of(bytes_of_file(folder / "map/border_laws.csv")).size() == 1 + 1);
-    CHECK(holds(mapped.out, "ln displacement ="));
-    for (const std::string& line : lines_of(mapped.out.substr(mapped.out.find("B1: ")))) {
+    std::string one_line = mapped.out;
+    std::ranges::replace(one_line, '\n', ' ');
+    CHECK(holds(one_line, "simd up to ln displacement ="));
+    CHECK(holds(one_line, "0 of 0 unseen borders"));
+    for (const std::string& line :
+         lines_of(mapped.out.substr(mapped.out.find("neighbour_list + bucket + columns + simd is")))) {
         INFO(line);
         CHECK((line.size() <= 80 || line.starts_with("Maps, borders")));
     }
