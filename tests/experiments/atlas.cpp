@@ -7,6 +7,8 @@ import aabblab.archive;
 import aabblab.atlas;
 import aabblab.configs;
 import aabblab.measures;
+import aabblab.metrics;
+import aabblab.results;
 import aabblab.scenes;
 import aabblab.statistics;
 import aabblab.tables;
@@ -379,15 +381,27 @@ TEST_CASE_METHOD(in_folder, "atlas --judge draws maps from existing results and 
                  "density = [0.03, 0.1, 0.3]\nratio = [1, 100]\nframes = 60\n[[compose]]\n"
                  "prepare = [\"none\", { name = \"neighbour_list\", margin = 0.1 }]\n[measure]\nrepeats = 2\n");
     run_well({"run", folder / "borders.toml", "--out", folder / "map/list_borders"});
+    run_well({"run", folder / "borders.toml", "--out", folder / "map/list_borders_unseen"});
     const program_result mapped = run_well({"atlas", "--judge", "--out", folder / "map"});
     CHECK(holds(mapped.err, "atlas_large has not been run yet"));
-    CHECK(holds(mapped.err, "list_borders_unseen has not been run yet"));
-    CHECK(lines_of(bytes_of_file(folder / "map/borders.csv")).size() == 1 + 6);
+    CHECK(holds(mapped.err, "sort_borders_unseen has not been run yet"));
+    const std::string borders = bytes_of_file(folder / "map/borders.csv");
+    CHECK(lines_of(borders).size() == 1 + 6 + 6);
+    CHECK(lines_of(borders.substr(borders.find(",unseen,"))).size() == 6);  // they follow the fitted ones
     CHECK(lines_of(bytes_of_file(folder / "map/border_laws.csv")).size() == 1 + 1);
     std::string one_line = mapped.out;
     std::ranges::replace(one_line, '\n', ' ');
     CHECK(holds(one_line, "simd up to ln displacement ="));
-    CHECK(holds(one_line, "0 of 0 unseen borders"));
+    CHECK(holds(one_line, " of 6 unseen borders"));
+    // Times are processor times of the thread.
+    double in_rows = 0, in_atlas = 0;
+    for (const aabblab::row& r : aabblab::verified_rows(folder / "map/atlas"))
+        for (const char* metric : {"frame_cpu_ms", "whole_cpu_ms"}) in_rows += aabblab::measured(metric)(r).value();
+    for (const atlas_scene& scene : aabblab::read_atlas(folder / "map/atlas", /*is_held_out=*/false))
+        for (const atlas_candidate& candidate : scene.candidates)
+            for (const auto time : {atlas_time::per_frame, atlas_time::whole_run})
+                for (const double ms : candidate.times(time)) in_atlas += ms;
+    CHECK(std::abs(in_atlas / in_rows - 1) < 1e-9);
     for (const std::string& line :
          lines_of(mapped.out.substr(mapped.out.find("neighbour_list + bucket + columns + simd is")))) {
         INFO(line);
