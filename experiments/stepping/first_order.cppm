@@ -1,49 +1,71 @@
-/// The motion as a system of first order, twice as large: displacements since the start, then velocities. Displacements
-/// keep precision: solvers perturb values relatively, and a contact's depth can be a billionth of a position.
+/// The motion as a system of first order: displacements since the start, then velocities. Displacements keep precision:
+/// solvers perturb values relatively, and a contact's depth can be a billionth of a position.
 module aabblab.stepping:first_order;
 
 import :dynamics;
 
 namespace aabblab {
 
+/// The values are, in this order: displacements of positions; p - 1 for each body that turns, where the quaternion p
+/// times its orientation at the start is its orientation; velocities; angular momenta.
 class first_order_system {
 public:
-    first_order_system(const acceleration_of& acceleration, const motion_state& state)
-        : acceleration_(acceleration),
-          start_(state.position),
-          values_(state.position.size(), 0.0),
-          position_(state.position),
-          velocity_(state.velocity),
-          accelerations_(state.position.size()) {
+    first_order_system(const equations_of_motion& equations, const motion_state& state)
+        : equations_(equations), start_(state), current_(state) {
+        rates_.fit(state);
+        values_.assign(state.position.size() + state.orientation.size(), 0.0);
         values_.insert(values_.end(), state.velocity.begin(), state.velocity.end());
+        values_.insert(values_.end(), state.angular_momentum.begin(), state.angular_momentum.end());
     }
 
-    /// The derivative of the values, for solvers: the values are displacements since the start, then velocities, so
-    /// their derivative is velocities, then accelerations a(x, v).
+    /// The derivative of the values, for solvers: velocities, the rates of quaternions, accelerations, and torques.
     void operator()(const std::vector<double>& values, std::vector<double>& derivative, double /*time*/) {
-        const auto half = static_cast<std::ptrdiff_t>(position_.size());
-        std::transform(values.begin(), values.begin() + half, start_.begin(), position_.begin(), std::plus());
-        std::copy(values.begin() + half, values.end(), velocity_.begin());
-        acceleration_(position_, velocity_, accelerations_);
-        std::ranges::copy(velocity_, derivative.begin());
-        std::ranges::copy(accelerations_, derivative.begin() + half);
+        take(values);
+        equations_.rates(current_, rates_);
+        auto to = std::ranges::copy(current_.velocity, derivative.begin()).out;
+        for (std::size_t i = 0; i < current_.turning_bodies(); ++i) {
+            const aabb::vec3d turning =
+                angular_velocity_of(equations_.rotors[i], current_.orientation_of(i), current_.momentum_of(i));
+            to = std::ranges::copy(rate_of(rotation_since_start(values, i), turning), to).out;
+        }
+        to = std::ranges::copy(rates_.acceleration, to).out;
+        std::ranges::copy(rates_.torque, to);
     }
 
     [[nodiscard]] std::vector<double>& values() { return values_; }
 
-    void store(motion_state& state) const {
-        const auto half = static_cast<std::ptrdiff_t>(position_.size());
-        std::transform(values_.begin(), values_.begin() + half, start_.begin(), state.position.begin(), std::plus());
-        std::copy(values_.begin() + half, values_.end(), state.velocity.begin());
+    void store(motion_state& state) {
+        take(values_);
+        state.position = current_.position;
+        state.velocity = current_.velocity;
+        state.orientation = current_.orientation;
+        state.angular_momentum = current_.angular_momentum;
     }
 
 private:
-    const acceleration_of& acceleration_;
-    std::vector<double> start_;
+    [[nodiscard]] std::array<double, 4> rotation_since_start(const std::vector<double>& values,
+                                                             std::size_t turning) const {
+        const double* const p = &values[start_.position.size() + 4 * turning];
+        return {p[0], p[1], p[2], 1 + p[3]};
+    }
+
+    /// Sets the current state to these values.
+    void take(const std::vector<double>& values) {
+        const std::span<const double> numbers = values;
+        const std::size_t positions = start_.position.size(), orientations = start_.orientation.size();
+        std::ranges::transform(numbers.first(positions), start_.position, current_.position.begin(), std::plus());
+        for (std::size_t i = 0; i < start_.turning_bodies(); ++i)
+            std::ranges::copy(composed(rotation_since_start(values, i), start_.orientation_of(i)),
+                              &current_.orientation[4 * i]);
+        std::ranges::copy(numbers.subspan(positions + orientations, positions), current_.velocity.begin());
+        std::ranges::copy(numbers.subspan(2 * positions + orientations), current_.angular_momentum.begin());
+    }
+
+    const equations_of_motion& equations_;
+    motion_state start_;
+    motion_state current_;
+    motion_rates rates_;
     std::vector<double> values_;
-    std::vector<double> position_;
-    std::vector<double> velocity_;
-    std::vector<double> accelerations_;
 };
 
 }  // namespace aabblab

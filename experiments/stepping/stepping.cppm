@@ -5,3 +5,4 @@ import aabb.std;
 
 export import :contact_law;
 export import :dynamics;
+export import :rotation;

@@ -39,11 +39,18 @@ struct stiff_result {
     }
 };
 
+/// What tests break on purpose, to show that a verdict depends on it: factors of friction and of torques.
+struct stiff_fault {
+    double friction = 1;
+    double torque = 1;
+};
+
 struct stiff_setting {
     bool quick = false;
     candidate tested;  ///< finds the contacts, unless a study compares methods
     /// Receives the completed share of a study, from 0 to 1.
     std::function<void(double)> progress = [](double) {};
+    stiff_fault fault = {};
 };
 
 struct stiff_study {

@@ -81,19 +81,19 @@ TEST_CASE("the scene dropped integrates its world by symplectic_euler") {
                                {scene.meshes()->meshes[0], scene.meshes()->meshes[1]}, 3);
     auto* const evaluated = new evaluated_scene(world);
     aabblab::motion_state state = world.start();
-    world.place(state.position, evaluated->current);
+    world.place(state, evaluated->current);
     aabblab::scene_frames frames{std::unique_ptr<aabb::mesh_scene>(evaluated)};
     aabblab::stage_runner finder(aabblab::candidate_of(c, true), frames, aabb::instrumentation::none);
     aabblab::dynamics forces(world);
     const auto euler = aabblab::integrator_named("symplectic_euler")->make(0);
-    const aabblab::acceleration_of acceleration = [&](const auto& position, const auto& velocity, auto& result) {
-        world.place(position, evaluated->current);
+    const aabblab::equations_of_motion equations{[&](const auto& at, auto& rates) {
+        world.place(at, evaluated->current);
         frames.next();
         finder.update();
         finder.search();
         finder.detect();
-        forces.accelerate(position, velocity, finder.sorted_contacts(), result);
-    };
+        forces.accelerate(at, finder.sorted_contacts(), rates);
+    }};
     for (std::size_t frame = 0; frame < recorded.size(); ++frame) {
         INFO("frame " << frame);
         std::vector<aabb::pose> poses;
@@ -102,6 +102,6 @@ TEST_CASE("the scene dropped integrates its world by symplectic_euler") {
             const aabb::vec3d difference = poses[i].translation - recorded[frame][i].translation;
             REQUIRE(dot(difference, difference) < 1e-20);
         }
-        euler->advance(acceleration, state, 0.001);
+        euler->advance(equations, state, 0.001);
     }
 }

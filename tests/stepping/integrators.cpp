@@ -8,7 +8,8 @@ namespace {
 double error_after_a_second(const aabblab::integrator_info& info, double step) {
     const auto stepper = info.make(1e-10);
     aabblab::motion_state state{{1}, {0}, 0};
-    const aabblab::acceleration_of spring = [](const auto& x, const auto&, auto& a) { a[0] = -4 * x[0]; };
+    const aabblab::equations_of_motion spring{
+        [](const auto& s, auto& rates) { rates.acceleration[0] = -4 * s.position[0]; }};
     for (int i = 0; i < std::lround(1 / step); ++i) stepper->advance(spring, state, step);
     REQUIRE(std::abs(state.time - 1) < 1e-12);
     return std::hypot(state.position[0] - std::cos(2.0), state.velocity[0] / 2 + std::sin(2.0));
@@ -38,7 +39,8 @@ TEST_CASE("integrators pass velocities to forces") {
         INFO(info.name);
         const auto stepper = info.make(1e-10);
         aabblab::motion_state state{{0}, {1}, 0};
-        const aabblab::acceleration_of drag = [](const auto&, const auto& v, auto& a) { a[0] = -3 * v[0]; };
+        const aabblab::equations_of_motion drag{
+            [](const auto& s, auto& rates) { rates.acceleration[0] = -3 * s.velocity[0]; }};
         for (int i = 0; i < 1000; ++i) stepper->advance(drag, state, 0.001);
         REQUIRE(std::abs(state.velocity[0] - std::exp(-3.0)) < 0.002);
     }

@@ -47,31 +47,32 @@ public:
                        c.balls * (sizeof(body) + sizeof(aabb::pose) + 9 * sizeof(double) + sizeof(std::uint32_t)));
         if (c.normalise == scaling::yes) normalise(meshes[1]);
         world_ = dropped_world(c, meshes, seed);
+        dynamics_.emplace(world_);
         state_ = world_.start();
-        acceleration_.resize(state_.position.size());
+        rates_.fit(state_);
         mesh_of = world_.mesh_of();
     }
 
     [[nodiscard]] bool reacts() const override { return true; }
 
     void take_contacts(std::span<const aabb::contact> contacts) override {
-        dynamics_.accelerate(state_.position, state_.velocity, contacts, acceleration_);
+        dynamics_->accelerate(state_, contacts, rates_);
         // The first step uses the initial velocity, which contacts of the first frame do not change.
         if (frames_run() == 1) return;
-        for (std::size_t i = 0; i < state_.velocity.size(); ++i) state_.velocity[i] += step_ * acceleration_[i];
+        for (std::size_t i = 0; i < state_.velocity.size(); ++i) state_.velocity[i] += step_ * rates_.acceleration[i];
     }
 
 private:
     void advance() override {
         for (std::size_t i = 0; i < state_.position.size(); ++i) state_.position[i] += step_ * state_.velocity[i];
     }
-    void place(std::size_t, std::vector<aabb::pose>& poses) override { world_.place(state_.position, poses); }
+    void place(std::size_t, std::vector<aabb::pose>& poses) override { world_.place(state_, poses); }
 
     double step_;
     stepped_world world_;
-    dynamics dynamics_{world_};
+    std::optional<dynamics> dynamics_;  // of the world, once it is known
     motion_state state_;
-    std::vector<double> acceleration_;
+    motion_rates rates_;
 };
 
 }  // namespace aabblab

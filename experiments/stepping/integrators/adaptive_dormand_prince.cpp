@@ -19,10 +19,10 @@ public:
     explicit adaptive_dormand_prince(double tolerance) : tolerance_(tolerance) {}
 
     /// Advances the state by `step`, in own steps so short that the estimated error of each is within the tolerance.
-    void advance(const acceleration_of& acceleration, motion_state& state, double step) override {
+    void advance(const equations_of_motion& equations, motion_state& state, double step) override {
         namespace odeint = boost::numeric::odeint;
         using stepper = odeint::runge_kutta_dopri5<std::vector<double>>;
-        first_order_system system(acceleration, state);
+        first_order_system system(equations, state);
         try {
             odeint::integrate_adaptive(odeint::make_controlled<stepper>(tolerance_, tolerance_), system,
                                        system.values(), state.time, state.time + step, step);

@@ -24,9 +24,9 @@ public:
     }
 
     /// Advances the state by `step`. CVODE continues from the earlier calls; an exception of the callback is rethrown.
-    void advance(const acceleration_of& acceleration, motion_state& state, double step) override {
+    void advance(const equations_of_motion& equations, motion_state& state, double step) override {
         if (!system_) {
-            system_.emplace(acceleration, state);
+            system_.emplace(equations, state);
             create_solver(system_->values(), state.time);
         }
         callback_exception_ = nullptr;

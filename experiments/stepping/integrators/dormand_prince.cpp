@@ -11,8 +11,8 @@ namespace {
 
 class dormand_prince final : public integrator {
 public:
-    void advance(const acceleration_of& acceleration, motion_state& state, double step) override {
-        first_order_system system(acceleration, state);
+    void advance(const equations_of_motion& equations, motion_state& state, double step) override {
+        first_order_system system(equations, state);
         // First same as last (Dormand and Prince 1980): the last stage of the previous step is the first of this one.
         stepper_.do_step(system, system.values(), state.time, step);
         system.store(state);

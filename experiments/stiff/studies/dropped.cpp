@@ -88,7 +88,7 @@ private:
     [[nodiscard]] double energy_of(simulation& balls) const {
         double sum = dynamics(world_).mechanical_energy(balls.state());
         std::vector<aabb::pose> poses;
-        world_.place(balls.state().position, poses);
+        world_.place(balls.state(), poses);
         const auto placed = [&](std::uint32_t body) {
             return placed_mesh{&world_.meshes[world_.bodies[body].mesh], poses[body]};
         };

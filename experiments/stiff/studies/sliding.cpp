@@ -81,7 +81,7 @@ std::vector<double> forces_of(const candidate& tested, const placement& p) {
         std::ranges::sort(pairs);
         std::vector<aabb::contact> contacts;
         for (const auto& [s, t] : pairs) contacts.push_back({0, 1, s, t});
-        const contact_force contact = force_of(law, contacts, {&lower, {}}, {&upper, pose}, /*approach=*/{0, 0, 0});
+        const contact_force contact = force_of(law, contacts, {&lower, {}}, {&upper, pose});
         forces.push_back(dot(contact.force, normal) / (tips * tips * (rest + p.pressed) * p.size));
     }
     return forces;
