@@ -22,9 +22,9 @@ struct body {
 /// Positions and velocities of all bodies, with three components per body, and orientations and angular momenta of
 /// those that turn, in the same order (see the partition `rotation`).
 struct motion_state {
-    std::vector<double> position;  ///< m
-    std::vector<double> velocity;  ///< m/s
-    double time = 0;               ///< s
+    std::vector<double> position;               ///< m
+    std::vector<double> velocity;               ///< m/s
+    double time = 0;                            ///< s
     std::vector<double> orientation = {};       ///< unit quaternions x, y, z, w
     std::vector<double> angular_momentum = {};  ///< three components per body that turns, kg m²/s
 
@@ -103,8 +103,9 @@ void turn_all_freely(std::span<const rotor> rotors, motion_state& state, double 
 ///
 /// Fixed steps of Euler and Verlet turn bodies by `turn_freely`, which stays on the group of rotations. Solvers for
 /// systems of first order get the components of the quaternion: its length has no effect, since orientations are
-/// normalised before use, and is set to 1 after each step, which keeps the order (Hairer, Lubich and Wanner 2006, IV.4).
-/// Exponential coordinates instead would need a new chart, and so a restart of multistep methods, before half a turn.
+/// normalised before use, and is set to 1 after each step, which keeps the order (Hairer, Lubich and Wanner 2006,
+/// IV.4). Exponential coordinates instead would need a new chart, and so a restart of multistep methods, before half a
+/// turn.
 class integrator : public aabb::kept_in_place {
 public:
     /// Advances the state by `step`, s; an adaptive integrator divides it into steps of its own choice.

@@ -6,8 +6,9 @@ import :dynamics;
 
 namespace aabblab {
 
-/// The values are, in this order: displacements of positions; p - 1 for each body that turns, where the quaternion p
-/// times its orientation at the start is its orientation; velocities; angular momenta.
+/// The values are, in this order: displacements of positions, those of the quaternions of bodies that turn, velocities,
+/// and angular momenta. Derivatives do not depend on where displacements start: Dormand and Prince's last stage serves
+/// the next step too.
 class first_order_system {
 public:
     first_order_system(const equations_of_motion& equations, const motion_state& state)
@@ -26,7 +27,7 @@ public:
         for (std::size_t i = 0; i < current_.turning_bodies(); ++i) {
             const aabb::vec3d turning =
                 angular_velocity_of(equations_.rotors[i], current_.orientation_of(i), current_.momentum_of(i));
-            to = std::ranges::copy(rate_of(rotation_since_start(values, i), turning), to).out;
+            to = std::ranges::copy(rate_of(quaternion_of_values(values, i), turning), to).out;
         }
         to = std::ranges::copy(rates_.acceleration, to).out;
         std::ranges::copy(rates_.torque, to);
@@ -43,10 +44,12 @@ public:
     }
 
 private:
-    [[nodiscard]] std::array<double, 4> rotation_since_start(const std::vector<double>& values,
+    /// The orientation of a body, whose length need not be 1.
+    [[nodiscard]] std::array<double, 4> quaternion_of_values(const std::vector<double>& values,
                                                              std::size_t turning) const {
         const double* const p = &values[start_.position.size() + 4 * turning];
-        return {p[0], p[1], p[2], 1 + p[3]};
+        const std::span<const double, 4> q = start_.orientation_of(turning);
+        return {q[0] + p[0], q[1] + p[1], q[2] + p[2], q[3] + p[3]};
     }
 
     /// Sets the current state to these values.
@@ -55,8 +58,7 @@ private:
         const std::size_t positions = start_.position.size(), orientations = start_.orientation.size();
         std::ranges::transform(numbers.first(positions), start_.position, current_.position.begin(), std::plus());
         for (std::size_t i = 0; i < start_.turning_bodies(); ++i)
-            std::ranges::copy(composed(rotation_since_start(values, i), start_.orientation_of(i)),
-                              &current_.orientation[4 * i]);
+            std::ranges::copy(of_length_1(quaternion_of_values(values, i)), &current_.orientation[4 * i]);
         std::ranges::copy(numbers.subspan(positions + orientations, positions), current_.velocity.begin());
         std::ranges::copy(numbers.subspan(2 * positions + orientations), current_.angular_momentum.begin());
     }

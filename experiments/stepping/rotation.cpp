@@ -5,6 +5,7 @@ module;
 module aabblab.stepping;
 
 import aabb.base;
+import aabb.geometry;
 import aabblab.vectors;
 
 namespace aabblab {
@@ -30,7 +31,7 @@ quaternion product_of(const quaternion& q, const quaternion& p) {
             q.w() * p.z() + q.x() * p.y() - q.y() * p.x() + q.z() * p.w()};
 }
 
-quaternion of_length_1(const quaternion& q) {
+quaternion normalised(const quaternion& q) {
     const double length = std::sqrt(q.w() * q.w() + q.x() * q.x() + q.y() * q.y() + q.z() * q.z());
     return {q.w() / length, q.x() / length, q.y() / length, q.z() / length};
 }
@@ -99,7 +100,7 @@ std::array<double, 4> quaternion_of(const matrix3& rotation) {
     if (!aabb::is_rigid({rotation, {0, 0, 0}}))
         throw aabb::input_error("a body that turns needs a rotation, not another matrix");
     const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> matrix(rotation.data());
-    return numbers_of(of_length_1(quaternion(Eigen::Matrix3d(matrix))));
+    return numbers_of(normalised(quaternion(Eigen::Matrix3d(matrix))));
 }
 
 matrix3 matrix_of(std::span<const double, 4> orientation) {
@@ -148,7 +149,7 @@ void turn_freely(const rotor& r, std::span<double, 4> orientation, std::span<con
     turn_about(order[2], time);
     turn_about(order[0], time / 2);
     principal = product_of(exponential(momentum * (time / middle)), principal);
-    const quaternion turned = of_length_1(product_of(principal, quaternion_at(r.axes).conjugate()));
+    const quaternion turned = normalised(product_of(principal, quaternion_at(r.axes).conjugate()));
     std::ranges::copy(numbers_of(turned), orientation.begin());
 }
 
@@ -157,8 +158,8 @@ std::array<double, 4> rate_of(std::span<const double, 4> q, const aabb::vec3d& a
     return numbers_of(product_of(half, quaternion_at(q)));
 }
 
-std::array<double, 4> composed(std::span<const double, 4> q, std::span<const double, 4> p) {
-    return numbers_of(of_length_1(product_of(quaternion_at(q), quaternion_at(p))));
+std::array<double, 4> of_length_1(std::span<const double, 4> q) {
+    return numbers_of(normalised(quaternion_at(q)));
 }
 
 }  // namespace aabblab

@@ -47,7 +47,7 @@ void turn_freely(const rotor& r, std::span<double, 4> orientation, std::span<con
 /// The rate (w/2) q at which an orientation changes, as a quaternion; q need not have length 1.
 [[nodiscard]] std::array<double, 4> rate_of(std::span<const double, 4> q, const aabb::vec3d& angular_velocity);
 
-/// The orientation that p, then q gives, with length 1.
-[[nodiscard]] std::array<double, 4> composed(std::span<const double, 4> q, std::span<const double, 4> p);
+/// The quaternion with length 1.
+[[nodiscard]] std::array<double, 4> of_length_1(std::span<const double, 4> q);
 
 }  // namespace aabblab

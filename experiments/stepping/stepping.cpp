@@ -327,9 +327,10 @@ void dynamics::accelerate(const motion_state& state, std::span<const aabb::conta
         return placed_mesh{&world_.meshes[bodies[i].mesh], poses_[i], motions_[i], bodies[i].radius};
     };
     const auto push = [&](std::uint32_t i, const Vector3d& force, const Vector3d& point, const Vector3d& moment) {
-        vector_at(rates.acceleration, i) += force / bodies[i].mass;
+        vector_at(std::span(rates.acceleration), i) += force / bodies[i].mass;
         if (const std::optional<std::size_t> turning = turning_[i])
-            vector_at(rates.torque, *turning) += moment + Vector3d(point - vector_at(state.position, i)).cross(force);
+            vector_at(std::span(rates.torque), *turning) +=
+                moment + Vector3d(point - vector_at(state.position, i)).cross(force);
     };
     spring_energy_ = 0;
     for (auto from = contacts.begin(); from != contacts.end();) {

@@ -9,7 +9,7 @@ namespace {
 class velocity_verlet final : public integrator {
 public:
     void advance(const equations_of_motion& equations, motion_state& state, double step) override {
-        if (before_.acceleration.size() != state.position.size()) {
+        if (!std::exchange(has_rates_, true)) {
             before_.fit(state);
             equations.rates(state, before_);
         }
@@ -33,6 +33,7 @@ public:
     }
 
 private:
+    bool has_rates_ = false;       // of the previous step's end
     motion_rates before_, after_;  // at the start and the end of a step
 };
 
