@@ -33,15 +33,22 @@ namespace aabblab {
             {{0, 2, 1}, {0, 3, 2}, {0, 4, 3}, {0, 1, 4}, {1, 2, 3}, {1, 3, 4}}};
 }
 
-/// A square plate centred at the origin: eight vertices, and two triangles per face with outward normals.
-[[nodiscard]] aabb::mesh slab(float side, float thickness) {
+/// A cuboid centred at the origin: eight vertices, and two triangles per face with outward normals.
+[[nodiscard]] aabb::mesh cuboid(const aabb::vec3d& sides) {
     aabb::mesh m;
-    for (const float z : {-thickness / 2, thickness / 2})
-        for (const auto& [x, y] : std::array<std::array<float, 2>, 4>{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}})
-            m.vertices.push_back({x * side / 2, y * side / 2, z});
+    const auto x = static_cast<float>(sides[0] / 2), y = static_cast<float>(sides[1] / 2);
+    const auto top = static_cast<float>(sides[2] / 2);
+    for (const float z : {-top, top})
+        for (const auto& [right, back] : std::array<std::array<float, 2>, 4>{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}})
+            m.vertices.push_back({right * x, back * y, z});
     m.triangles = {{0, 2, 1}, {0, 3, 2}, {4, 5, 6}, {4, 6, 7}, {0, 1, 5}, {0, 5, 4},
                    {1, 2, 6}, {1, 6, 5}, {2, 3, 7}, {2, 7, 6}, {3, 0, 4}, {3, 4, 7}};
     return m;
+}
+
+/// A square plate centred at the origin.
+[[nodiscard]] aabb::mesh slab(float side, float thickness) {
+    return cuboid({double{side}, double{side}, double{thickness}});
 }
 
 }  // namespace aabblab

@@ -209,7 +209,7 @@ TEST_CASE("contacts keep linear and angular momentum of two bodies") {
 }
 
 TEST_CASE("worlds that cannot be are rejected in one sentence") {
-    aabblab::stepped_world world{.meshes = {aabblab::make_mesh("square").mesh}, .bodies = {{.mass = 1}}};
+    aabblab::stepped_world world{.meshes = {aabblab::make_mesh("square").mesh}, .bodies = {{.mass = 1}}, .law = {}};
     const auto check = [&](const char* message) { REQUIRE_THROWS_WITH(aabblab::dynamics(world), message); };
     world.law.friction = 0.5;
     check("friction needs a slip speed above 0");

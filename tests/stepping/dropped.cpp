@@ -97,7 +97,7 @@ TEST_CASE("the scene dropped integrates its world by symplectic_euler") {
     for (std::size_t frame = 0; frame < recorded.size(); ++frame) {
         INFO("frame " << frame);
         std::vector<aabb::pose> poses;
-        world.place(state.position, poses);
+        world.place(state, poses);
         for (std::size_t i = 0; i < poses.size(); ++i) {
             const aabb::vec3d difference = poses[i].translation - recorded[frame][i].translation;
             REQUIRE(dot(difference, difference) < 1e-20);

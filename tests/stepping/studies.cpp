@@ -17,10 +17,11 @@ const aabblab::stiff_study& study_named(std::string_view name) {
     return *study;
 }
 
-aabblab::stiff_result run_study(std::string_view name, const aabblab::candidate& tested) {
+aabblab::stiff_result run_study(std::string_view name, const aabblab::candidate& tested,
+                                const aabblab::stiff_fault& fault = {}) {
     const aabblab::stiff_study& study = study_named(name);
     aabblab::stiff_result result;
-    study.run({.quick = true, .tested = tested}, result);
+    study.run({.quick = true, .tested = tested, .fault = fault}, result);
     for (const aabblab::stiff_point& p : result.points)
         CHECK(std::ranges::count(study.figures, p.figure, &aabblab::figure::name) == 1);
     return result;
@@ -71,6 +72,41 @@ TEST_CASE("contacts missed in every thousandth detection change verdicts") {
     // In a single contact of 63 steps, only more frequent misses show.
     REQUIRE(wrong_in(run_study("ball_bounces", forgetful(1000))) == "");
     REQUIRE(holds(wrong_in(run_study("ball_bounces", forgetful(40))), "trajectory error"));
+}
+
+TEST_CASE("a dropped torque, doubled friction and contacts missed in every thousandth detection change verdicts") {
+    struct mutation {
+        std::string_view study;
+        // A value that must be wrong; empty where the mutation cannot show.
+        std::string_view without_torque, with_double_friction, with_lost_contacts;
+    };
+    for (const auto& [study, without_torque, with_double_friction, with_lost_contacts] :
+         std::initializer_list<mutation>{
+             {"rolling", "velocity_verlet: rolling speed", "velocity_verlet: time until it rolls",
+              "velocity_verlet: greatest rise or fall"},
+             {"rolling", "tan θ = 0.98 · 3.5 μ: acceleration", "tan θ = 1.02 · 3.5 μ: growth of the slip", ""},
+             {"rolling", "velocity_verlet: greatest stable step", "velocity_verlet: greatest stable step", ""},
+             {"block", "least tan θ at which it tips", "level: time until it stops", "level: greatest rise or fall"},
+             {"block", "", "v_s 0.001 m/s: creep", ""},
+             {"rocking", "quarter of the period", "", ""},
+             {"spinning_disc", "only spins: time until it stops", "only spins: time until it stops",
+              "only spins: greatest rise or fall"},
+             {"spinning_disc", "v/(Rω) at a twentieth of the speed", "", ""},
+             {"oblique_impact", "slip 3.4 μ(1+e) v_n: tangential speed", "slip 3.6 μ(1+e) v_n: tangential speed",
+              "restitution"},
+             {"cradle", "", "", "speed of the last of five balls"},
+             {"facets", "order of the rolling speed's error", "time until it rolls", ""},
+             {"block_stack", "lean of the lowest block", "", ""}}) {
+        if (study == "block_stack" && !aabblab::integrator_named("bdf")) continue;
+        INFO(study);
+        const aabblab::candidate exact = aabblab::default_candidate();
+        if (!without_torque.empty()) CHECK(holds(wrong_in(run_study(study, exact, {.torque = 0})), without_torque));
+        if (!with_double_friction.empty())
+            CHECK(holds(wrong_in(run_study(study, exact, {.friction = 2})), with_double_friction));
+        if (!with_lost_contacts.empty()) CHECK(holds(wrong_in(run_study(study, forgetful(1000))), with_lost_contacts));
+    }
+    // A block on its edge, of which a step is 1e-5 s, hardly falls by rare misses; without contacts it does.
+    CHECK(holds(wrong_in(run_study("rocking", forgetful(1))), "quarter of the period"));
 }
 
 TEST_CASE("an engine that misses all contacts lets bodies tunnel") {

@@ -1,0 +1,172 @@
+module aabblab.stiff;
+
+import :incline;
+import :rules;
+import :simulation;
+
+namespace aabblab {
+
+namespace {
+
+constexpr double radius = 0.1;               // R, m
+constexpr double friction = 0.3;             // μ
+constexpr double speed = 1;                  // R ω₀, m/s
+constexpr double slip_speed = 1e-3 * speed;  // m/s
+constexpr double stiffness = 1e6;            // of all tips, N/m
+constexpr std::uint32_t tips = 400;
+
+/// A thin disc that stands on tips, each a triangle that meets the floor only there. They share the area equally, on
+/// the golden-angle spiral, and lie in the plane of the disc's centre of mass, so that friction does not tilt it.
+aabb::mesh brush() {
+    aabb::mesh teeth;
+    const double golden_angle = std::numbers::pi * (3 - std::sqrt(5.0));
+    for (std::uint32_t i = 0; i < tips; ++i) {
+        const double r = radius * std::sqrt((i + 0.5) / tips);
+        const auto x = static_cast<float>(r * std::cos(golden_angle * i));
+        const auto y = static_cast<float>(r * std::sin(golden_angle * i));
+        for (const aabb::vec3f& v :
+             {aabb::vec3f{x, y, 0}, {x + 0.001F, y + 0.002F, 0.01F}, {x - 0.001F, y - 0.002F, 0.01F}})
+            teeth.vertices.push_back(v);
+        teeth.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    }
+    return teeth;
+}
+
+/// The shares of μ m g and μ m g R that a uniform disc's friction has against sliding by v = share · R ω, and against
+/// spinning by ω: ∫ (v + y..)/|u| dA over the disc, by the midpoint rule in equal areas (Farkas et al. 2003).
+std::pair<double, double> friction_against(double share) {
+    double force = 0, torque = 0;
+    constexpr int rings = 100, angles = 100;
+    for (int i = 0; i < rings; ++i)
+        for (int j = 0; j < angles; ++j) {
+            const double r = std::sqrt((i + 0.5) / rings);
+            // By symmetry, half of the disc has the torque and the force of the whole along the motion, x.
+            const double angle = std::numbers::pi * ((j + 0.5) / angles - 0.5);
+            const double x = r * std::cos(angle), y = r * std::sin(angle);
+            const double slip_x = share - y, slip_y = x;
+            const double slip = std::hypot(slip_x, slip_y);
+            force += slip_x / slip / (rings * angles);
+            torque += (x * slip_y - y * slip_x) / slip / (rings * angles);
+        }
+    return {force, torque};
+}
+
+/// v/(R ω) when v + R ω has fallen to a share of its start, by Runge-Kutta steps of v' = -μ g F, R ω' = -2 μ g T, as
+/// the inertia is m R²/2. Only the ratio of both matters: with s = v + R ω, dv/ds = F/(F + 2T).
+double ratio_by_farkas(double ratio, double fallen_to) {
+    const auto slope = [](double s, double v) {
+        const auto [force, torque] = friction_against(v / (s - v));
+        return force / (force + 2 * torque);
+    };
+    double v = ratio / (1 + ratio), logarithm = 0;
+    constexpr int steps = 40;
+    const double step = std::log(fallen_to) / steps;
+    for (int i = 0; i < steps; ++i) {
+        // In the logarithm of s: dv/dln s = s dv/ds.
+        const auto rate = [&](double at, double value) { return std::exp(at) * slope(std::exp(at), value); };
+        const double k1 = rate(logarithm, v);
+        const double k2 = rate(logarithm + step / 2, v + step / 2 * k1);
+        const double k3 = rate(logarithm + step / 2, v + step / 2 * k2);
+        const double k4 = rate(logarithm + step, v + step * k3);
+        v += step / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
+        logarithm += step;
+    }
+    return v / (fallen_to - v);
+}
+
+stepped_world disc_on_floor(double sliding) {
+    return {.meshes = {floor_of(8), brush()},
+            .bodies = {{},
+                       {.mesh = 1,
+                        .position = {0.013, 0.007, -earth_gravity / stiffness},
+                        .velocity = {sliding, 0, 0},
+                        .mass = 1,
+                        .inertia = inertia_of_disc(1, radius),
+                        .angular_velocity = {0, 0, speed / radius}}},
+            .law = {.geometry = contact_geometry::each_vertex,
+                    .stiffness = stiffness / tips,
+                    .damping = 2 * std::sqrt(stiffness) / tips,
+                    .may_pull = false,
+                    .friction = friction,
+                    .slip_speed = slip_speed},
+            .gravity = earth_gravity};
+}
+
+double sliding_of(const simulation& disc) {
+    return std::hypot(disc.state().velocity[3], disc.state().velocity[4]);
+}
+double spinning_of(const simulation& disc) {
+    return radius * disc.angular_velocity(1)[2];
+}
+
+}  // namespace
+
+void run_spinning_disc(const stiff_setting& setting, stiff_result& result) {
+    const double step = 0.2 * slip_speed / (friction * earth_gravity);
+    for (const integrator_info& i : integrators()) {
+        if (!i.is_symplectic()) continue;  // others take the same way with more detections
+        const std::string subject(i.name);
+        run_or_record_failure(result, i.name, [&] {
+            // A disc that only spins: the torque is 2/3 μ m g R.
+            const double until_stop = 3 * speed / (4 * friction * earth_gravity);
+            simulation disc(disc_on_floor(/*sliding=*/0), setting, i);
+            const double height = disc.state().position[5];
+            double greatest_sliding = 0, rise = 0;
+            while (spinning_of(disc) > slip_speed && disc.state().time < 2 * until_stop) {
+                disc.advance(step);
+                greatest_sliding = std::max(greatest_sliding, sliding_of(disc));
+                rise = std::max(rise, std::abs(disc.state().position[5] / height - 1));
+            }
+            // Tips within v_s/ω of the axis feel less than Coulomb's friction, and have (v_s/v)² of the area: less than
+            // v_s/v over the run, the share of the time that is left at v_s. The tips' mean radius is 2/3 R to 1e-5.
+            result.add(within(subject + ", only spins", "time until it stops (s)", disc.state().time, until_stop,
+                              2 * slip_speed / speed + step / until_stop));
+            // Of a spiral, at most one tip's friction is not in balance about the axis.
+            result.add(at_most(subject + ", only spins", "greatest sliding speed over Rω₀", greatest_sliding / speed,
+                               0.75 / tips));
+            result.add(at_most(subject + ", only spins", "greatest rise or fall over depth at rest", rise, 1e-5));
+        });
+        for (const double start : {0.3, 0.653, 1.5}) {  // v/(R ω)
+            run_or_record_failure(result, i.name, [&] {
+                simulation disc(disc_on_floor(start * speed), setting, i);
+                const double fallen_to = 0.05;
+                const std::string label = "v = " + short_number(start) + " Rω at first, " + subject;
+                const double total = speed * (1 + start);
+                int steps = 0;
+                while (sliding_of(disc) + spinning_of(disc) > fallen_to * total && disc.state().time < 2) {
+                    disc.advance(step);
+                    if (i.order == 2 && steps++ % 50 == 0)
+                        result.plot("disc", "v = " + short_number(start) + " Rω at first",
+                                    (sliding_of(disc) + spinning_of(disc)) / total,
+                                    sliding_of(disc) / spinning_of(disc));
+                }
+                // Tips within v_s/ω of the pivot feel less friction, and the sum over tips differs from the integral
+                // about there: both by their share of the area.
+                const double ratio = sliding_of(disc) / spinning_of(disc);
+                const double error = std::pow(slip_speed / spinning_of(disc), 2) + 1.0 / tips;
+                result.add(within(label, "v/(Rω) at a twentieth of the speed", ratio, ratio_by_farkas(start, fallen_to),
+                                  error));
+                if (start == 0.653)  // a number of three digits
+                    result.add(within(label, "v/(Rω) at a twentieth of the speed, against its limit", ratio, 0.653,
+                                      error + 0.0005 / 0.653));
+            });
+        }
+    }
+}
+
+stiff_study spinning_disc_study() {
+    return {
+        "spinning_disc",
+        "A thin disc of 1 kg on 400 tips, which share its weight and area, slides and spins on level ground until "
+        "friction stops both. Friction is regularised with a slip speed of a thousandth of the speed of the rim",
+        "a disc that only spins stops after 3Rω₀/(4μg); sliding and spin end together, with v/(Rω) → 0.653 (Farkas, "
+        "Bartels, Unger and Wolf, Phys. Rev. Lett. 90, 248302, 2003), along the solution of their equations",
+        &run_spinning_disc,
+        {figure{.name = "disc",
+                .caption = "Sliding over spin of a disc, v/(Rω), while friction stops it; it tends to 0.653.",
+                .x = {"v + Rω (relative to the start)", /*logarithmic=*/true},
+                .y = {"v/(Rω)"},
+                .lines = {{"0.653", series_style::level, {{0, 0.653}}}}}}};
+}
+
+}  // namespace aabblab
