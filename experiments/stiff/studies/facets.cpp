@@ -1,7 +1,6 @@
 module aabblab.stiff;
 
 import :incline;
-import :method;
 import :rules;
 import :simulation;
 import aabb.geometry;
@@ -121,41 +120,19 @@ void measure_convergence(const stiff_setting& setting, stiff_result& result) {
         at_least("80 facets and more", "order of the depth's error", order_in_facets(numbers, depth_errors), 0.9));
 }
 
-/// What methods of detection change: how far time and speed are from those with exact contacts, for a mesh of 10 mm.
-void compare_methods(const stiff_setting& setting, stiff_result& result) {
-    const sliding_ball ball{/*radius=*/0.005, /*facets=*/320};
-    const rolled reference = roll(ball, setting);
-    std::vector<method> methods = triangle_methods();
-    std::ranges::move(tree_and_list_methods(), std::back_inserter(methods));
-    for (std::size_t m = 0; m < methods.size(); ++m) {
-        setting.progress(static_cast<double>(m) / static_cast<double>(methods.size()));
-        stiff_setting other = setting;
-        other.tested = methods[m].tested;
-        run_or_record_failure(result, methods[m].label, [&] {
-            const rolled measured = roll(ball, other);
-            const double deviation =
-                std::max(std::abs(measured.time / reference.time - 1), std::abs(measured.speed / reference.speed - 1));
-            result.add(expected_if(methods[m].tested.exact && methods[m].tested.exact_boxes,
-                                   at_most(methods[m].label, "deviation of time and speed, 10 mm", deviation, 0)));
-        });
-    }
-}
-
 }  // namespace
 
 /// Friction acts at the height of the floor, R - δ below the centre: with the lever r = R - δ, the angular momentum
 /// m r v + I ω is kept, and the ball rolls with v = r ω = v₀/(1 + I/(m r²)).
 void run_facets(const stiff_setting& setting, stiff_result& result) {
     measure_convergence(setting, result);
-    if (!setting.quick) compare_methods(setting, result);
 }
 
 stiff_study facets_study() {
     return {"facets",
             "Meshes of 80 to 5,120 facets (1,280 with --quick) slide without spin until they roll, as a ball does. A "
             "pressure on the surface inside the floor carries the weight of 1 kg at a twentieth of the radius, and "
-            "friction acts at its centre, with force and torque by Stokes' theorem from the detected pairs. Without "
-            "--quick, all methods of detection follow, with a mesh of 10 mm",
+            "friction acts at its centre, with force and torque by Stokes' theorem from the detected pairs",
             "the smooth ball: v₀/(1 + I/(m r²)) after v₀/(μg (1 + m r²/I)), with r = R - δ; errors fall as the inverse "
             "of the number of facets",
             &run_facets,
