@@ -4,7 +4,6 @@ module;
 
 module aabblab.stepping;
 
-import aabb.base;
 import aabb.geometry;
 import aabblab.vectors;
 

@@ -135,7 +135,7 @@ void compare_methods(const stiff_setting& setting, double step, double until_sto
         const std::string& subject = methods[m].label;
         result.add(
             expected_if(methods[m].tested.exact, within(subject, "time until a disc of 10 mm stops (s)", spinning.time,
-                                                        until_stop, 2 * slip_speed / speed + step / until_stop)));
+                                                        until_stop, slip_speed / speed + step / until_stop)));
         result.add(reported(subject, "its depth then over depth at rest", disc.state().position[5] / height));
     }
 }
@@ -153,10 +153,10 @@ void run_spinning_disc(const stiff_setting& setting, stiff_result& result) {
         run_or_record_failure(result, i.name, [&] {
             simulation disc(disc_on_floor(radius, /*sliding=*/0), setting, i);
             const spun spinning = spin(disc, radius, step, 2 * until_stop);
-            // Tips within v_s/ω of the axis feel less than Coulomb's friction, and have (v_s/v)² of the area: less than
-            // v_s/v over the run, the share of the time that is left at v_s. The tips' mean radius is 2/3 R to 1e-5.
+            // Coulomb's law is exact until v_s, which leaves v_s/v₀ of the time, but for tips within v_s/ω of the axis:
+            // they have the cube of that share of the torque. The tips' mean radius is 2/3 R to 1e-5.
             result.add(within(subject, "time until it stops (s)", spinning.time, until_stop,
-                              2 * slip_speed / speed + step / until_stop));
+                              slip_speed / speed + step / until_stop));
             // Of a spiral, at most one tip's friction is not in balance about the axis.
             result.add(
                 at_most(subject, "greatest sliding speed over Rω₀", spinning.greatest_sliding / speed, 0.75 / tips));
