@@ -15,7 +15,7 @@ constexpr std::size_t balls = 5;
 constexpr double speed = 1;        // of the first ball, m/s
 constexpr double stiffness = 1e6;  // N/m
 // Two balls of 1 kg oscillate as their reduced mass of half a kilogram. Functions: clang 19 does not initialise
-// variables of an implementation unit of a module before main.
+// variables of a module's implementation unit in their order.
 double frequency() {
     return std::sqrt(2 * stiffness);
 }
@@ -59,6 +59,7 @@ void run_cradle(const stiff_setting& setting, stiff_result& result) {
         const double gap = 2 * contact_time() * speed;
         const double end = 2 * static_cast<double>(balls) * (gap / last_speed + contact_time());
         for (const integrator_info& i : integrators()) {
+            if (i.stable_below == 0) continue;  // explicit Euler gains energy in every contact
             run_or_record_failure(result, i.name, [&] {
                 const std::string subject = std::string(i.name) + ", e " + short_number(restitution);
                 simulation row(row_of_balls(gap, damping), setting, i, /*tolerance=*/1e-9);

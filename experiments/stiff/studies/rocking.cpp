@@ -12,7 +12,7 @@ namespace aabblab {
 namespace {
 
 constexpr aabb::vec3d slender = {0.2, 0.2, 1};
-// Functions: clang 19 does not initialise variables of an implementation unit of a module before main.
+// Functions: clang 19 does not initialise variables of a module's implementation unit in their order.
 double slenderness() {  // α
     return std::atan(slender[0] / slender[2]);
 }
@@ -73,7 +73,7 @@ void run_rocking(const stiff_setting& setting, stiff_result& result) {
     const double restitution = 1 - 1.5 * std::pow(std::sin(slenderness()), 2);
     const auto lift = [](double tilt) { return std::cos(slenderness() - tilt) - std::cos(slenderness()); };
     for (const integrator_info& i : integrators()) {
-        if (!i.is_symplectic()) continue;  // others take the same way with more detections
+        if (!i.is_symplectic() || i.stable_below > 2) continue;  // others take the same way with more detections
         run_or_record_failure(result, i.name, [&] {
             std::vector<double> quarters, ratios;
             rubbing contact{.friction = 0.6, .slip_speed = 0.01, .frequency = 1e3, .damping = 0.5};
