@@ -118,11 +118,20 @@ struct integrator_info {
     std::string_view summary;
     bool adaptive = false;  ///< chooses its own steps, by a tolerance
     int order;
-    /// The limit of step times angular frequency below which an undamped oscillation does not grow; may be infinite.
+    /// The leading error of an undamped oscillation after half a period, relative to its amplitude: this times the
+    /// order-th power of step times angular frequency. 0 if adaptive.
+    double half_period_error = 0;
+    /// How many steps old the velocity is that forces see. Above 0, the order is 1 if forces depend on velocity.
+    double velocity_lag = 0;
+    /// The limit of step times angular frequency below which an undamped oscillation does not grow; 0 if it always
+    /// grows, infinite if it never does.
     double stable_below = std::numeric_limits<double>::infinity();
+    /// The factor by which a step multiplies the energy of an undamped oscillation, from step times angular frequency.
+    /// Null if the energy is bounded, or if the integrator is adaptive.
+    double (*energy_factor)(double scaled_step) = nullptr;
     std::unique_ptr<integrator> (*make)(double tolerance);  ///< only adaptive ones use the tolerance
-    /// Whether the energy of an oscillation does not drift: here, of Euler and Verlet, unlike Runge-Kutta and BDF.
-    [[nodiscard]] bool is_symplectic() const { return !adaptive && order <= 2; }
+    /// Whether the energy of an oscillation does not drift.
+    [[nodiscard]] bool is_symplectic() const { return !adaptive && energy_factor == nullptr; }
 };
 
 [[nodiscard]] std::span<const integrator_info> integrators();

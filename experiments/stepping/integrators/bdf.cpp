@@ -3,6 +3,7 @@ module;
 #include <nvector/nvector_serial.h>
 #include <sundials/sundials_context.h>
 #include <sunlinsol/sunlinsol_dense.h>
+#include <sunlinsol/sunlinsol_spgmr.h>
 #include <sunmatrix/sunmatrix_dense.h>
 
 module aabblab.stepping;
@@ -59,14 +60,20 @@ private:
     template <class Handle, auto Free>
     using owned = std::unique_ptr<std::remove_pointer_t<Handle>, freed_by<Free>>;
 
-    /// Sets CVODE up for these values: backward differences, Newton's method with a dense matrix, no messages.
+    /// Sets CVODE up for these values: backward differences, Newton's method, no messages. Linear systems of many
+    /// values are solved by GMRES without a matrix, whose columns would cost a force each.
     void create_solver(const std::vector<double>& initial, double time) {
         const auto size = static_cast<sunindextype>(initial.size());
         values_.reset(N_VNew_Serial(size, context_.get()));
         std::ranges::copy(initial, N_VGetArrayPointer(values_.get()));
         memory_.reset(CVodeCreate(CV_BDF, context_.get()));
-        matrix_.reset(SUNDenseMatrix(size, size, context_.get()));
-        solver_.reset(SUNLinSol_Dense(values_.get(), matrix_.get(), context_.get()));
+        constexpr sunindextype most_of_dense = 100;
+        if (size <= most_of_dense) {
+            matrix_.reset(SUNDenseMatrix(size, size, context_.get()));
+            solver_.reset(SUNLinSol_Dense(values_.get(), matrix_.get(), context_.get()));
+        } else {
+            solver_.reset(SUNLinSol_SPGMR(values_.get(), SUN_PREC_NONE, /*maxl=*/0, context_.get()));
+        }
         CVodeInit(memory_.get(), &derivative, time, values_.get());
         CVodeSStolerances(memory_.get(), tolerance_, tolerance_);
         CVodeSetUserData(memory_.get(), this);

@@ -29,6 +29,8 @@ integrator_info symplectic_euler_integrator() {
     return {.name = "symplectic_euler",
             .summary = "semi-implicit Euler: a step with the old velocity, then the force there",
             .order = 1,
+            .half_period_error = 0.5,  // the velocity stands for the middle of the step
+            .velocity_lag = 0.5,
             .stable_below = 2,  // dt·ω
             .make = [](double) -> std::unique_ptr<integrator> { return std::make_unique<symplectic_euler>(); }};
 }
