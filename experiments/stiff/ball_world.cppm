@@ -1,3 +1,6 @@
+module;
+#include <cmath>
+
 /// A ball, shaped as an octahedron on its vertex, and a floor: a world with closed-form solutions.
 module aabblab.stiff:ball_world;
 
@@ -9,8 +12,12 @@ namespace aabblab {
 
 /// The closed form of an underdamped mass of 1 kg on a linear spring with a dashpot: x'' = -ω² x - 2ζω x'.
 struct oscillator {
-    double frequency;  ///< ω, 1/s
-    double damping;    ///< ζ
+    double frequency;    ///< ω, 1/s
+    double damping = 0;  ///< ζ
+    /// Whether the dashpot may pull. If not, the force ends when it vanishes, x'' = 0: at the phase 2 acos ζ of the
+    /// damped oscillation, where the speed is exp(-ζωt) of the initial one, and the spring is still compressed
+    /// (Schwager and Pöschel 2007).
+    bool may_pull = true;
 
     /// The depth of a mass that touches at time 0 with this speed, m.
     [[nodiscard]] double depth(double speed, double time) const {
@@ -21,17 +28,15 @@ struct oscillator {
         return speed * std::exp(-damping * frequency * time) *
                (std::cos(damped() * time) - damping * frequency / damped() * std::sin(damped() * time));
     }
-    /// The time until the mass returns to where it touched, s.
-    [[nodiscard]] double contact_time() const { return std::numbers::pi / damped(); }
+    /// The time until the force ends, s.
+    [[nodiscard]] double force_time() const {
+        return (may_pull ? std::numbers::pi : 2 * std::acos(damping)) / damped();
+    }
+    /// The time until the mass returns to where it touched, s: after the force's end it flies freely from a depth of
+    /// 2ζ/ω times its speed.
+    [[nodiscard]] double contact_time() const { return force_time() + (may_pull ? 0 : 2 * damping / frequency); }
     /// The speed at the end of the contact over the speed at its start.
-    [[nodiscard]] double restitution() const {
-        return std::exp(-std::numbers::pi * damping / std::sqrt(1 - damping * damping));
-    }
-    /// The ζ that gives this restitution.
-    [[nodiscard]] static double damping_for(double restitution) {
-        const double logarithm = std::log(restitution);
-        return -logarithm / std::hypot(std::numbers::pi, logarithm);
-    }
+    [[nodiscard]] double restitution() const { return std::exp(-damping * frequency * force_time()); }
 
 private:
     [[nodiscard]] double damped() const { return frequency * std::sqrt(1 - damping * damping); }
@@ -45,7 +50,8 @@ private:
     // Body 0 is the fixed floor. The ball must not hit the diagonal between two of its triangles.
     world.bodies = {{}, {.mesh = 1, .position = {0.3, -0.2, 0}, .velocity = {0, 0, -speed_down}, .mass = 1}};
     world.law = {.stiffness = contact.frequency * contact.frequency,
-                 .damping = 2 * contact.damping * contact.frequency};
+                 .damping = 2 * contact.damping * contact.frequency,
+                 .may_pull = contact.may_pull};
     world.gravity = gravity;
     return world;
 }
