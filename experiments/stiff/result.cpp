@@ -35,7 +35,9 @@ constexpr auto columns_of_point = [](auto& p, auto field) {
     field("line", p.line);
     field("x", any_number(p.x));
     field("y", any_number(p.y));
+    field("label", p.label);
 };
+constexpr std::array<std::string_view, 1> later_columns_of_point = {"label"};
 
 std::filesystem::path file_of(const std::filesystem::path& folder, const stiff_study& study, const char* ending) {
     return folder / (std::string(study.name) + ending);
@@ -47,13 +49,12 @@ std::filesystem::path file_of(const std::filesystem::path& folder, const stiff_s
 /// is added if the figure lacks it. Figures without points are left out.
 std::vector<figure> figures_of(const stiff_study& study, const stiff_result& result) {
     std::vector<figure> figures = study.figures;
-    if (study.mark) study.mark(figures, result.rows);
     for (figure& f : figures)
         for (const stiff_point& p : result.points) {
             if (p.figure != f.name) continue;
             auto line = std::ranges::find(f.lines, p.line, &series::label);
             if (line == f.lines.end()) line = f.lines.insert(line, {p.line});
-            line->points.push_back({p.x, p.y});
+            line->points.push_back({.x = p.x, .y = p.y, .label = p.label});
         }
     std::erase_if(figures, [](const figure& f) {
         return std::ranges::all_of(f.lines, [](const series& line) { return line.points.empty(); });
@@ -72,7 +73,7 @@ std::optional<stiff_result> read_result(const std::filesystem::path& folder, con
     // Earlier versions wrote only the rows.
     if (!std::filesystem::exists(rows) || !std::filesystem::exists(points)) return std::nullopt;
     return stiff_result{rows_of_file<stiff_row>(rows, columns_of_row),
-                        rows_of_file<stiff_point>(points, columns_of_point)};
+                        rows_of_file<stiff_point>(points, columns_of_point, later_columns_of_point)};
 }
 
 }  // namespace aabblab

@@ -27,6 +27,7 @@ struct stiff_point {
     std::string figure;  ///< its name
     std::string line;    ///< its label
     double x = 0, y = 0;
+    std::string label = {};  ///< of the point: the step or tolerance that gives it
 };
 
 struct stiff_result {
@@ -34,8 +35,8 @@ struct stiff_result {
     std::vector<stiff_point> points;
 
     void add(stiff_row row) { rows.push_back(std::move(row)); }
-    void plot(std::string_view name, std::string_view line, double x, double y) {
-        points.push_back({std::string(name), std::string(line), x, y});
+    void plot(std::string_view name, std::string_view line, double x, double y, std::string label = {}) {
+        points.push_back({std::string(name), std::string(line), x, y, std::move(label)});
     }
 };
 
@@ -59,8 +60,6 @@ struct stiff_study {
     std::string_view reference;  ///< the source of the expectation
     void (*run)(const stiff_setting& setting, stiff_result& result);
     std::vector<figure> figures{};  ///< the figures of its points, still empty
-    /// Marks values of the rows in the figures.
-    void (*mark)(std::span<figure> figures, std::span<const stiff_row> rows) = nullptr;
 };
 
 /// All studies, in the order of the report.
