@@ -26,10 +26,10 @@ namespace aabblab {
     return scaled(m, side / (double{m.vertices.back()[0]} - double{m.vertices.front()[0]}));
 }
 
-/// An inverted pyramid with its apex at the origin and a square top.
-[[nodiscard]] aabb::mesh hanging_pyramid(float height, float side) {
-    const float s = side / 2;
-    return {{{0, 0, 0}, {-s, -s, height}, {s, -s, height}, {s, s, height}, {-s, s, height}},
+/// An inverted pyramid with a square top, and its apex `below` under the origin.
+[[nodiscard]] aabb::mesh hanging_pyramid(float height, float side, float below = 0) {
+    const float s = side / 2, top = height - below;
+    return {{{0, 0, -below}, {-s, -s, top}, {s, -s, top}, {s, s, top}, {-s, s, top}},
             {{0, 2, 1}, {0, 3, 2}, {0, 4, 3}, {0, 1, 4}, {1, 2, 3}, {1, 3, 4}}};
 }
 
