@@ -12,14 +12,18 @@ const std::string columns = "bucket + columns + simd";
 const std::string verlet_list = "neighbour_list:margin=0.1 + bucket + columns + simd";
 const std::string incremental = "insertion + incremental";
 const std::string subdivided = "insertion + subdivided";
+const std::string segmented = "insertion + segmented";
+const std::string segmented_list = "insertion + segmented:regions=1";
 const std::string one_axis = "insertion + one_axis";
 const std::string x_axis = "insertion + one_axis:axis=x";
 const std::string simd_sweep = "insertion + simd";
 const std::string two_axis = "insertion + two_axis";
-const std::string uniform_grid = "std + uniform_grid + simd";
+const std::string grid_on_two_axes = "std + uniform_grid:axes=2 + one_axis";
+const std::string grid_on_three_axes = "std + uniform_grid + one_axis";
+const std::string sorted_grid = "insertion + sorted_grid + one_axis:axis=x";
 const std::string cells_on_two_axes = "radix + axial_cut:axes=2 + one_axis";
-const std::string cells_on_three_axes = "radix + axial_cut:axes=3 + one_axis";
-const std::string hierarchical_grid = "ode_hash";
+const std::string hierarchical_grid = "std + hierarchical_grid + one_axis";
+const std::string grid_of_one_level = "std + hierarchical_grid:levels=1 + one_axis";
 const std::string dynamic_tree = "bullet_dbvt";
 const std::string bullet_sap = "bullet_sap";
 
@@ -112,42 +116,43 @@ const std::vector<statement>& statements() {
         {{"B3", "Tracy, Buss and Woods 2009, abstract",
           "these techniques provide higher performance than previous sweep and prune methods",
           "Subdivision and segmented interval lists make sweep and prune faster.",
-          "subdivided for the techniques: regions so small that each is one segment of a list", /*is_proxy=*/true},
-         by_motion(subdivided, incremental,
+          "segmented, after the authors' program; incremental for the methods before", /*is_proxy=*/false},
+         by_motion(segmented, incremental,
                    {{1000, 0.001}, {10000, 0.001}, {1000, 0.1}, {10000, 0.1}, {1000, 1}, {10000, 1}})},
         {{"B4", "Tracy, Buss and Woods 2009, abstract",
           "perform better than octrees in temporally coherent environments",
-          "With coherence, subdivided sweep and prune beats octrees.",
-          "subdivided as in B3; Bullet's dynamic tree and Embree's refitted one for octrees", /*is_proxy=*/true},
-         {{"1,000 boxes, by 0.01", subdivided, dynamic_tree, moved(1000, 0.01)},
-          {"10,000 boxes, by 0.01", subdivided, dynamic_tree, moved(10000, 0.01)},
-          {"10,000 boxes, by 0.01", subdivided, "embree_refit", moved(10000, 0.01)},
-          {"10,000 boxes, a hundredth moves", subdivided, dynamic_tree, partly_moving(10000, 0.01)}}},
+          "With coherence, segmented sweep and prune beats octrees.",
+          "segmented as in B3; Bullet's dynamic tree and Embree's refitted one for octrees", /*is_proxy=*/true},
+         {{"1,000 boxes, by 0.01", segmented, dynamic_tree, moved(1000, 0.01)},
+          {"10,000 boxes, by 0.01", segmented, dynamic_tree, moved(10000, 0.01)},
+          {"10,000 boxes, by 0.01", segmented, "embree_refit", moved(10000, 0.01)},
+          {"10,000 boxes, a hundredth moves", segmented, dynamic_tree, partly_moving(10000, 0.01)}}},
         {{"B5", "Ericson 2005, Real-Time Collision Detection, 7.1.1",
           "cells can be too large for the smaller objects while too small for the largest objects",
           "A uniform grid suits boxes of similar size but not of very different sizes, which a hierarchy of grids "
           "suits.",
-          "uniform_grid; ODE's hash space, a grid per power of two, for the hierarchy", /*is_proxy=*/true},
-         {{"10,000 boxes of one size", uniform_grid, hierarchical_grid, sizes_to(1, 10000)},
-          {"10,000 boxes, sizes 1 to 100", hierarchical_grid, uniform_grid, sizes_to(100, 10000)},
-          {"the lead of the hierarchy, sizes 1 to 100 over one size", hierarchical_grid, uniform_grid,
+          "hierarchical_grid, the book's, with as many levels as it chooses and with one", /*is_proxy=*/false},
+         {{"10,000 boxes of one size", grid_of_one_level, hierarchical_grid, sizes_to(1, 10000),
+           /*reference_scenes=*/nullptr, expectation::not_more},
+          {"10,000 boxes, sizes 1 to 100", hierarchical_grid, grid_of_one_level, sizes_to(100, 10000)},
+          {"the lead of the hierarchy, sizes 1 to 100 over one size", hierarchical_grid, grid_of_one_level,
            sizes_to(100, 10000), sizes_to(1, 10000)}}},
         {{"B6", "Nordby 2011, BEPUphysics 0.16, benchmarks of broad phases",
           "The grid helps prevent the clustering problem associated with fixed one-axis approaches",
           "A sweep along a fixed axis suffers from clustered boxes; a grid on the other two axes does not.",
-          "the sweep as described; columns for the grid", /*is_proxy=*/true},
-         {{"1,000 boxes, 20 clouds over one", columns, x_axis, clouds(20, 1000), clouds(1, 1000)},
-          {"10,000 boxes, 20 clouds over one", columns, x_axis, clouds(20, 10000), clouds(1, 10000)}}},
+          "SortAndSweep1D (one_axis:axis=x) and Grid2DSortAndSweep (sorted_grid), as described", /*is_proxy=*/false},
+         {{"1,000 boxes, 20 clouds over one", sorted_grid, x_axis, clouds(20, 1000), clouds(1, 1000)},
+          {"10,000 boxes, 20 clouds over one", sorted_grid, x_axis, clouds(20, 10000), clouds(1, 10000)}}},
         {{"B7", "Nordby 2011, BEPUphysics 0.16, benchmarks of broad phases",
           "SAS1D starts out great (in fact, the fastest at 100 objects)",
           "A sweep along one axis is the fastest with 100 boxes; with many, a grid on two axes with a sweep along the "
           "third beats a dynamic hierarchy.",
-          "the sweep as described; columns for the grid, Bullet's tree for the hierarchy; one thread",
+          "the sweep and the grid as described; Bullet's tree for the hierarchy; one thread",
           /*is_proxy=*/true},
          {{"100 boxes", x_axis, dynamic_tree, boxes(100)},
-          {"100 boxes", x_axis, columns, boxes(100)},
-          {"10,000 boxes", columns, dynamic_tree, boxes(10000)},
-          {"30,000 boxes", columns, dynamic_tree, boxes(30000)}}},
+          {"100 boxes", x_axis, sorted_grid, boxes(100)},
+          {"10,000 boxes", sorted_grid, dynamic_tree, boxes(10000)},
+          {"30,000 boxes", sorted_grid, dynamic_tree, boxes(30000)}}},
         {{"B8", "Deltodesco 2012, Nape, space.Broadphase",
           "[slower if] lots of objects are moving very quickly or [...] a large variety in the size",
           "A sweep along x is slower at fast motion and with many sizes; a dynamic tree suffers from neither.",
@@ -194,17 +199,17 @@ const std::vector<statement>& statements() {
         {{"B16", "Tracy, Buss and Woods 2009, abstract",
           "well-suited to large environments in which many objects are not moving at once",
           "Segmented interval lists suit large environments in which few objects move at a time.",
-          "subdivided as in B3", /*is_proxy=*/true},
-         {{"10,000 boxes, a hundredth moves", subdivided, incremental, partly_moving(10000, 0.01)},
-          {"10,000 boxes, a tenth moves", subdivided, incremental, partly_moving(10000, 0.1)},
-          {"10,000 boxes, a hundredth moves", subdivided, one_axis, partly_moving(10000, 0.01)},
-          {"its lead, 10,000 boxes over 1,000, a tenth moves", subdivided, incremental, partly_moving(10000, 0.1),
+          "segmented on one list, \"this algorithm\" of the abstract", /*is_proxy=*/false},
+         {{"10,000 boxes, a hundredth moves", segmented_list, incremental, partly_moving(10000, 0.01)},
+          {"10,000 boxes, a tenth moves", segmented_list, incremental, partly_moving(10000, 0.1)},
+          {"10,000 boxes, a hundredth moves", segmented_list, one_axis, partly_moving(10000, 0.01)},
+          {"its lead, 10,000 boxes over 1,000, a tenth moves", segmented_list, incremental, partly_moving(10000, 0.1),
            partly_moving(1000, 0.1)}}},
         {{"B17", "Serpa and Rodrigues 2020, Broadmark, README",
           "Best variants are BF SIMD Parallel, SAP SIMD Parallel and Grid 3D SAP Parallel.",
           "Among grids with a sweep in their cells, one on three axes is better than one on two.",
-          "cells of axial_cut, of equal numbers of boxes instead of equal width, on one thread", /*is_proxy=*/true},
-         by_count(cells_on_three_axes, cells_on_two_axes, {1000, 10000, 30000})},
+          "uniform_grid on three and on two axes, with smaller cells and on one thread", /*is_proxy=*/true},
+         by_count(grid_on_three_axes, grid_on_two_axes, {1000, 10000, 30000})},
         {{"B18", "Catto 2007, Box2D, b2BroadPhase.cpp",
           "it is not great for huge worlds (use a multi-SAP instead), it is not great for large objects",
           "Incremental sweep and prune suffers in a huge world, where one per region is better, and from large boxes.",

@@ -101,7 +101,7 @@ std::string rows() {
 }
 
 std::string error_rows() {
-    return aabblab::csv_of(std::span<const aabblab::error_point>()) + "fine,float,curve,exact,3,1,0,0,1.5,1,2\n";
+    return aabblab::csv_of(std::span<const aabblab::error_point>()) + "fine,float,curve,exact,3,1,0,0,1.5,1,2,,,\n";
 }
 
 std::vector<text_format> formats() {
