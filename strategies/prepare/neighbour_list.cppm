@@ -51,7 +51,9 @@ struct neighbour_list_prepare {
         if (scene.frames < fewest)
             return {.because = {{"fewer than {frames} frames: a Verlet list would not be worth its cost",
                                  {{{"frames", fewest}}}}}};
-        return {.serves = true, .because = {{"frames are coherent: builds a Verlet list once it is worth its cost"}}};
+        return {.serves = true,
+                .because = {{"{frames} frames or more: builds a Verlet list once it is worth its cost",
+                             {{{"frames", fewest}}}}}};
     }
 
     neighbour_list_prepare() = default;

@@ -63,7 +63,8 @@ public:
         if (scene.triangles_per_query() >= double{least_of_front} && scene.exact_triangles &&
             scene.frames >= scene_traits::fewest_frames_to_keep && scene.queries <= scene.frames * most_fronts) {
             fit.settings.push_back({"front", "kept"});
-            fit.because.push_back({"frames are coherent: pairs of leaves are kept while meshes move little"});
+            fit.because.push_back({"{frames} frames or more: pairs of leaves are kept while meshes move little",
+                                   {{{"frames", scene_traits::fewest_frames_to_keep}}}});
         }
         fit.serves = !fit.settings.empty();
         return fit;

@@ -148,10 +148,10 @@ TEST_CASE_METHOD(in_folder, "explain reports what it measured and selected for a
     const program_result reported = run_well({"explain", file});
     for (const char* part :
          {"objects       200\n", "frames        81; sizes and pairs from frame 0, motion from 0 to 3\n",
-          "at rest       0 % of the objects\n", "counters of all work  ",
-          "prepare    neighbour_list  frames are coherent", "    plans for the next frames\n",
-          "one column of all boxes, sorted and swept", " pairs of boxes, with a skin of ", "as selected", "split_large",
-          "axial_cut", "build, tree, triangle do not apply to this scene"})
+          "at rest       0 % of the objects\n", "counters of all work  ", "prepare    neighbour_list  4 frames or more",
+          "    plans for the next frames\n", "one column of all boxes, sorted and swept",
+          " pairs of boxes, with a skin of ", "as selected", "split_large", "axial_cut",
+          "build, tree, triangle do not apply to this scene"})
         CHECK(holds(reported.out, part));
     CHECK_FALSE(holds(reported.out, "canonical"));
     // No other sweep can be combined with columns.
@@ -218,7 +218,7 @@ TEST_CASE_METHOD(in_folder, "explain reports what it could not measure in the gi
     run_well({"scene", "brownian", "--n", "4000", "--frames", "4", "--density", "1e6", "--out", file});
     const program_result reported = run_well({"explain", file, "--seconds", "0.01"});
     for (const char* part : {"objects   4,000\n", "the rest  stopped after ",
-                             "prepare    neighbour_list  frames are coherent", "stopped after "})
+                             "prepare    neighbour_list  4 frames or more", "stopped after "})
         CHECK(holds(reported.out, part));
     CHECK(holds(run_program({"explain", file, "--seconds", "0"}).err, "is how long to run: a number above 0"));
 }

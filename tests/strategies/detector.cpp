@@ -264,7 +264,7 @@ TEST_CASE("an auto_detector reports what it selected, by which rule, and what it
     CHECK(leaves_out(boxes, absence::local_detection));
     CHECK(leaves_out(boxes, absence::counters));
     const auto_detector many(meshes, mesh_of);
-    CHECK(rule_of(many, strategy_kind::prepare).starts_with("neighbour_list, frames are coherent"));
+    CHECK(rule_of(many, strategy_kind::prepare).starts_with("neighbour_list, 4 frames or more"));
     CHECK(rule_of(many, strategy_kind::build).starts_with("sah, "));
     CHECK(rule_of(auto_detector(meshes, mesh_of, {}, 1), strategy_kind::build).starts_with("median, "));
     CHECK(leaves_out(many, absence::counters));
