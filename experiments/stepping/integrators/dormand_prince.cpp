@@ -3,27 +3,12 @@ module;
 
 module aabblab.stepping;
 
-import :first_order;
+import :odeint_steps;
 
 namespace aabblab {
 
-namespace {
-
-class dormand_prince final : public integrator {
-public:
-    void advance(const equations_of_motion& equations, motion_state& state, double step) override {
-        first_order_system system(equations, state);
-        // First same as last (Dormand and Prince 1980): the last stage of the previous step is the first of this one.
-        stepper_.do_step(system, system.values(), state.time, step);
-        system.store(state);
-        state.time += step;
-    }
-
-private:
-    boost::numeric::odeint::runge_kutta_dopri5<std::vector<double>> stepper_;
-};
-
-}  // namespace
+// First same as last (Dormand and Prince 1980): the last stage of a step is the first of the next one.
+using dormand_prince = odeint_steps<boost::numeric::odeint::runge_kutta_dopri5<std::vector<double>>>;
 
 integrator_info dormand_prince_integrator() {
     // On the imaginary axis the stability polynomial 1 + z + … + z^5/120 + z^6/600 leaves the unit circle at z = iy

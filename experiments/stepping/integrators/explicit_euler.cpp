@@ -3,26 +3,11 @@ module;
 
 module aabblab.stepping;
 
-import :first_order;
+import :odeint_steps;
 
 namespace aabblab {
 
-namespace {
-
-class explicit_euler final : public integrator {
-public:
-    void advance(const equations_of_motion& equations, motion_state& state, double step) override {
-        first_order_system system(equations, state);
-        stepper_.do_step(system, system.values(), state.time, step);
-        system.store(state);
-        state.time += step;
-    }
-
-private:
-    boost::numeric::odeint::euler<std::vector<double>> stepper_;
-};
-
-}  // namespace
+using explicit_euler = odeint_steps<boost::numeric::odeint::euler<std::vector<double>>>;
 
 integrator_info explicit_euler_integrator() {
     return {.name = "explicit_euler",

@@ -3,26 +3,11 @@ module;
 
 module aabblab.stepping;
 
-import :first_order;
+import :odeint_steps;
 
 namespace aabblab {
 
-namespace {
-
-class runge_kutta_4 final : public integrator {
-public:
-    void advance(const equations_of_motion& equations, motion_state& state, double step) override {
-        first_order_system system(equations, state);
-        stepper_.do_step(system, system.values(), state.time, step);
-        system.store(state);
-        state.time += step;
-    }
-
-private:
-    boost::numeric::odeint::runge_kutta4<std::vector<double>> stepper_;
-};
-
-}  // namespace
+using runge_kutta_4 = odeint_steps<boost::numeric::odeint::runge_kutta4<std::vector<double>>>;
 
 integrator_info runge_kutta_4_integrator() {
     return {.name = "runge_kutta_4",
