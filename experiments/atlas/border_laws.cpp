@@ -19,7 +19,7 @@ bool is_fitted(const border& b) {
     return !b.is_unseen && b.position > 0 && std::isfinite(b.position);
 }
 
-/// With enough digits to fit the law again.
+/// The number with enough digits to fit the law again.
 std::string digits_of(double value) {
     return fmt::format("{:.6g}", value);
 }

@@ -6,20 +6,21 @@ namespace aabblab {
 
 namespace {
 
-/// Of 1 + p, with p pairs per box: without a list, a frame costs a search per box; with one, a test per listed pair,
-/// and a search whenever boxes have moved by the skin (Chialvo and Debenedetti 1990). More pairs favour the search.
+/// The logarithm of 1 + p, with p pairs per box: without a list, a frame costs a search per box; with one, a test per
+/// listed pair, and a search whenever boxes have moved by the skin (Chialvo and Debenedetti 1990). More pairs favour
+/// the search.
 double log_of_tested_boxes(const scene_measures& m) {
     return std::log1p(m.pairs_per_object);
 }
 
-/// Of the longest edge over the median one. Where sizes differ, most pairs have a large box, to whose pairs the skin
-/// adds few, so that lists are worth their cost for longer.
+/// The logarithm of the longest edge over the median one. Where sizes differ, most pairs have a large box, to whose
+/// pairs the skin adds few, so that lists are worth their cost for longer.
 double log_of_size_ratio(const scene_measures& m) {
     return std::log(m.boxes.size_ratio.value_or(1));
 }
 
-/// Of the inversions per box and frame over the two thirds power of the number of boxes n, on which they do not depend:
-/// a box passes those in its displacement, of n per n^(1/3) mean spacings along the axis.
+/// The logarithm of the inversions per box and frame over the two thirds power of the number of boxes n, on which they
+/// do not depend: a box passes those in its displacement, of n per n^(1/3) mean spacings along the axis.
 double log_of_inversions(const scene_measures& m) {
     const double inversions = m.motion ? m.motion->inversions : 0;
     return std::log(inversions) - 2.0 / 3 * std::log(static_cast<double>(m.objects));

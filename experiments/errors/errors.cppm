@@ -64,7 +64,7 @@ enum class pair_group : std::uint8_t { of_floats, of_doubles, of_meshes };
 
 /// Work-precision diagrams of a group (Hairer, Nørsett, Wanner, Solving Ordinary Differential Equations I, 1993, II.4):
 /// error over run time, one curve per method over its parameter, with 95 % intervals, on logarithmic axes. Real pairs
-/// have a panel per scene; of generated ones, most of which are adversarial, the error is that in the worst class. A
+/// have a panel per scene; of generated ones, mostly adversarial, the error is that in the worst class. A
 /// line joins the Pareto front; methods without errors are drawn on the level 1/N. Empty if no method errs.
 [[nodiscard]] std::optional<figure> group_figure(std::span<const error_point> points, pair_group group);
 

@@ -43,7 +43,7 @@ struct placed_mesh {
     const aabb::mesh* mesh;
     aabb::pose pose;
     rigid_motion motion = {};
-    /// If positive, the detected mesh stands for a ball of this radius about its origin, m.
+    /// The detected mesh stands, if this is positive, for a ball of this radius about its origin, m.
     double radius = 0;
 
     /// The triangle in world coordinates, computed in double precision.

@@ -9,7 +9,7 @@ export namespace aabblab {
 /// A rigid body. Without a tensor of inertia it only translates.
 struct body {
     std::uint32_t mesh = 0;
-    /// Of the mesh's origin, m; it is the centre of mass of a body that turns.
+    /// The place of the mesh's origin, m; it is the centre of mass of a body that turns.
     aabb::vec3d position = {0, 0, 0};
     aabb::vec3d velocity = {0, 0, 0};                       ///< m/s
     double mass = std::numeric_limits<double>::infinity();  ///< kg; infinite for a body that does not translate
@@ -56,7 +56,7 @@ struct stepped_world {
     double gravity = 0;  ///< downwards, along z, m/s²
 
     [[nodiscard]] motion_state start() const;
-    /// Of the bodies that turn.
+    /// The moments of inertia of the bodies that turn.
     [[nodiscard]] std::vector<rotor> rotors() const;
     [[nodiscard]] std::vector<std::uint32_t> mesh_of() const;
     void place(const motion_state& state, std::vector<aabb::pose>& poses) const;
@@ -77,7 +77,7 @@ public:
     /// Kinetic energy and potential energy above z = 0, J.
     [[nodiscard]] double mechanical_energy(const motion_state& state) const;
 
-    /// In the world's axes, rad/s; zero for a body without inertia.
+    /// The angular velocity in the world's axes, rad/s; zero for a body without inertia.
     [[nodiscard]] aabb::vec3d angular_velocity(const motion_state& state, std::size_t body) const;
 
 private:

@@ -51,7 +51,7 @@ public:
                      world_.rotors()} {
         ignored_.fit(state_);
     }
-    /// With the candidate and the fault of a setting.
+    /// Simulates with the candidate and the fault of a setting.
     simulation(const stepped_world& world, const stiff_setting& setting, const integrator_info& stepping,
                double tolerance = 0)
         : simulation(world, setting.tested, stepping, tolerance, setting.fault) {}
@@ -68,7 +68,7 @@ public:
                    ? std::span<const aabb::contact>(runner_.sorted_contacts())
                    : detect_at(state_);
     }
-    /// Of a body, in the world's axes, rad/s.
+    /// The angular velocity of a body in the world's axes, rad/s.
     [[nodiscard]] aabb::vec3d angular_velocity(std::size_t body) const {
         return dynamics_.angular_velocity(state_, body);
     }

@@ -19,7 +19,7 @@ const std::vector<std::string> cell_sizes{"4", "8", "16", "32", "64"};
 const std::map<std::string, std::string> fastest_before{
     {"brownian", "8"}, {"clustered", "32"}, {"one_huge", "8"}, {"mixed_sizes", "64"}};
 
-/// For each cell size, the scene in which the same archive had it slowest, compared with the fastest one.
+/// The scene, for each cell size, in which the same archive had it slowest, compared with the fastest one.
 const std::pair<std::string, std::string> slowest_before[] = {
     {"4", "mixed_sizes"}, {"8", "mixed_sizes"}, {"16", "mixed_sizes"}, {"32", "one_huge"}, {"64", "one_huge"}};
 

@@ -124,7 +124,7 @@ TEST_CASE("a segmented list names all intervals near one, whatever was inserted,
     }));
 }
 
-TEST_CASE("a segmented list stops a move when it is told to") {
+TEST_CASE("a segmented list ends a move once the callback returns false") {
     std::vector<std::uint32_t> scratch(200);
     std::vector<ordered_end> ends;
     for (std::uint32_t id = 0; id < 200; ++id) {

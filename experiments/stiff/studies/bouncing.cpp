@@ -100,7 +100,7 @@ public:
         ++added_;
     }
     [[nodiscard]] double rms() const { return std::sqrt(mean_square_); }
-    /// From the mean of the first quarter to that of the last.
+    /// The change from the mean of the first quarter to that of the last.
     [[nodiscard]] double creep() const { return creep_; }
 
 private:

@@ -46,7 +46,7 @@ double speed_of(const simulation& row, std::size_t ball) {
 
 }  // namespace
 
-/// With gaps, every ball hits the next one alone and gives it (1+e)/2 of its speed. Touching balls with springs share
+/// Across gaps every ball hits the next one alone and gives it (1+e)/2 of its speed. Touching balls with springs share
 /// the impact instead: a wave disperses along them.
 void run_cradle(const stiff_setting& setting, stiff_result& result) {
     for (const double damping_ratio : {0.0, 0.1}) {

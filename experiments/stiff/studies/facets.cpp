@@ -18,9 +18,9 @@ struct sliding_ball {
     double radius;  ///< R, m
     std::uint32_t facets;
 
-    /// At rest, m: more than the height of the coarsest facets.
+    /// The depth at rest, m: more than the height of the coarsest facets.
     [[nodiscard]] double depth() const { return 0.05 * radius; }
-    /// Of the friction about the centre, m.
+    /// The lever of the friction about the centre, m.
     [[nodiscard]] double lever() const { return radius - depth(); }
     [[nodiscard]] double speed() const { return std::sqrt(10 * radius); }  // v₀, m/s
     [[nodiscard]] double slip_speed() const { return 0.01 * speed(); }

@@ -62,16 +62,16 @@ public:
     void advance(double step) { body_.advance(step); }
     [[nodiscard]] double time() const { return body_.state().time; }
     [[nodiscard]] double tip_depth() const { return -(body_.state().position[5] + tip()[2]); }
-    /// Of the tip, towards -x, m/s.
+    /// The speed of the tip towards -x, m/s.
     [[nodiscard]] double slip() const {
         const aabb::vec3d turning = body_.angular_velocity(1), arm = tip();
         return -(body_.state().velocity[3] + turning[1] * arm[2] - turning[2] * arm[1]);
     }
-    /// Of the centre of mass, m/s.
+    /// The upward speed of the centre of mass, m/s.
     [[nodiscard]] double speed_up() const { return body_.state().velocity[5]; }
 
 private:
-    /// From the centre of mass, in the world's axes.
+    /// The vector from the centre of mass, in the world's axes.
     [[nodiscard]] aabb::vec3d tip() const {
         const matrix3 r = matrix_of(body_.state().orientation_of(0));
         return {-half_length * r[2], -half_length * r[5], -half_length * r[8]};

@@ -61,7 +61,7 @@ rocked rock(const stiff_setting& setting, const integrator_info& stepping, const
 
 }  // namespace
 
-/// With a slender block, sin(α - θ) is nearly α - θ, so that θ'' = -p² (α - θ), and the first impact comes after
+/// A slender block is assumed: sin(α - θ) is nearly α - θ, so that θ'' = -p² (α - θ), and the first impact comes after
 /// arcosh(1/(1 - θ₀/α))/p, a quarter of the period (Housner 1963). The impact at the other edge keeps the angular
 /// momentum about it, which leaves 1 - 1.5 sin² α of the angular velocity. Its square is the ratio of the energies
 /// m g R (cos(α - θ) - cos α) of both amplitudes.
