@@ -75,8 +75,8 @@ struct border_term {
     double (*value)(const scene_measures& m);
 };
 
-/// Where two candidates take the same time as one parameter grows, and the law that predicts it. Candidates that differ
-/// only in parameters, such as the skin of a Verlet list, count as one, their fastest.
+/// The values of a growing parameter where two candidates take the same time, and the law that predicts it. Candidates
+/// that differ only in parameters, such as the skin of a Verlet list, count as one, their fastest.
 struct border_kind {
     std::string name;           ///< of the config that measures it; that of its unseen scenes ends in "_unseen"
     std::string before, after;  ///< the strategies that are faster below, and above

@@ -187,7 +187,7 @@ private:
 
     [[nodiscard]] bool has_front() const { return x_.direction != better::neither && y_.direction != better::neither; }
 
-    /// Where points without errors are drawn, since log 0 is infinite: at one wrong pair, or, of other errors, below
+    /// The place of points without errors, since log 0 is infinite: at one wrong pair, or, of other errors, below
     /// the least. Empty if the metric counts no errors, or if none is zero.
     [[nodiscard]] std::optional<double> floor_of_errors() const {
         if (y_.group != metric_group::error || is_errorless()) return std::nullopt;

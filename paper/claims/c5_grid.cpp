@@ -139,8 +139,8 @@ std::map<double, std::vector<const condition*>> by_objects(const std::vector<con
     return groups;
 }
 
-/// In how many scenes a grid of some fixed cell size takes less time than the cut by more than the band, and which size
-/// is the fastest most often.
+/// The number of scenes in which a grid of some fixed cell size takes less time than the cut by more than the band, and
+/// which size is the fastest most often.
 std::string grids_faster_text(const std::vector<condition>& conditions) {
     std::size_t scenes = 0, faster = 0;
     double least = 1, greatest = 0;

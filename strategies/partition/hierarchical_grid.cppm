@@ -34,12 +34,12 @@ public:
         "grids of doubling cell size; each box is stored once, on the level of its size";
 
     struct config {
-        /// Number of levels; the coarsest has cells four times as long as the longest box. auto: as many as the sizes
-        /// need, up to 32.
+        /// Number of levels; the coarsest has cells four times as long as the longest box. auto: what the range of box
+        /// sizes needs, up to 32.
         std::optional<std::uint32_t> levels;
     };
     static constexpr std::tuple parameters{integer_parameter{
-        "levels", &config::levels, 1U, 32U, "number of grids; auto: as many as the sizes of the boxes need"}};
+        "levels", &config::levels, 1U, 32U, "number of grids; auto: what the range of box sizes needs"}};
 
     /// Neither the sort nor the sweep is used, so that one of each is accepted: those of a composition that names none.
     template <class... All>

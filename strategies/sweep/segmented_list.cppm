@@ -125,7 +125,7 @@ private:
         std::array<ordered_end, capacity> ends;
         std::uint32_t size = 0;
     };
-    /// Where an end stands: the segment, by its place in the list, and the index in it.
+    /// The place of an end: the segment, by its place in the list, and the index in it.
     struct place {
         std::uint32_t at;
         std::uint32_t slot;

@@ -37,7 +37,7 @@ public:
     struct config {
         /// A leaf with more boxes is split; a subtree with fewer becomes a leaf. The default is Broadmark's.
         std::uint32_t leaf = 512;
-        /// By how much boxes are grown on every side. Broadmark's default for its boxes of about one unit.
+        /// The distance by which boxes are grown on every side. Broadmark's default for its boxes of about one unit.
         double margin = 0.01;
     };
     static constexpr std::tuple parameters{
