@@ -40,18 +40,18 @@ table gaps_table(const std::vector<condition>& conditions) {
     return t;
 }
 
-/// The time of Shell sort over that of insertion sort against the inversions per element: one panel for boxes in space
-/// and one for boxes on a line, one series per gap sequence, one point per condition (scene).
+/// The time of Shell sort over that of insertion sort against the inversions per element: one panel per gap sequence,
+/// one series for boxes in space and one for boxes on a line, one point per condition (scene).
 figure figure_of(const std::vector<condition>& conditions) {
     figure f = log_log("c3",
                        "Time of Shell sort over that of insertion sort (the line at 1) against inversions per element, "
-                       "for each gap sequence; 95 % intervals.",
+                       "a plot for each gap sequence; 95 % intervals.",
                        "inversions per element", "time over that of insertion sort");
-    for (const bool in_space : {true, false}) {
+    for (const auto& [gaps, subject] : gap_sequences) {
         figure_panel& panel = f.panels.emplace_back();
-        panel.title = in_space ? "in space" : "on a line";
-        for (const auto& [gaps, subject] : gap_sequences) {
-            series s{gaps, series_style::points};
+        panel.title = gaps;
+        for (const bool in_space : {true, false}) {
+            series s{in_space ? "in space" : "on a line", series_style::points};
             for (const condition& c : conditions)
                 if (const endpoint ratio = over_insertion(c, gaps);
                     is_brownian(c) == in_space && ratio.is_known() && disorder_of(c) > 0)

@@ -85,19 +85,19 @@ table table_of(const test_times& times) {
 figure figure_of(const test_times& times) {
     figure f{"c6",
              "Time of one elementary test, on the pairs that a traversal of two trees visits; medians and quartiles.",
-             {"test"},
-             {"time per test (ns)"}};
+             {"time per test (ns)"},
+             {"test"}};
     series transformed{"with the transformation from B's frame to A's", series_style::points};
     series untransformed{"without a transformation", series_style::points};
     for (const auto& [name, processes] : times) {
         if (name.ends_with(frame_a_suffix)) continue;
-        const auto x = static_cast<double>(f.x.names.size());
-        f.x.names.emplace_back(x, name.substr(name.find('/') + 1));
+        const auto y = -static_cast<double>(f.y.names.size());  // downwards, as in the table
+        f.y.names.emplace_back(y, name.substr(name.find('/') + 1));
         const auto add = [&](series& line, const std::string& test) {
             const auto entry = times.find(test);
             if (entry == times.end()) return;
             const quartiles q = spread_of(entry->second);
-            line.points.push_back({x, q.median, q.low, q.high});
+            line.points.push_back({.x = q.median, .y = y, .x_low = q.low, .x_high = q.high});
         };
         add(transformed, name);
         add(untransformed, name + std::string(frame_a_suffix));

@@ -180,8 +180,8 @@ def c2(results):
 
 def c3(results):
     lines = Lines()
-    for in_space in (True, False):
-        for gaps in GAPS:
+    for gaps in GAPS:
+        for in_space in (True, False):
             points = []
             for factors, rows in conditions_of(results, "c3"):
                 found = spread(rows, {"sort": "insertion"}, "inversions", per_object=True)
@@ -191,7 +191,7 @@ def c3(results):
                     found["y"], rows, {"sort": "shell:gaps=" + gaps}, {"sort": "insertion"}, "update_cpu_ms"
                 )
                 points += [point] if point else []
-            lines.add(gaps, by_x(points), "in space" if in_space else "on a line")
+            lines.add("in space" if in_space else "on a line", by_x(points), gaps)
     lines.add("insertion sort", [{"y": 1}])
     return lines
 
@@ -252,12 +252,11 @@ def c6(results):
         "without a transformation": "/frame:a",
     }.items():
         points = []
-        for x, name in enumerate(tests):
+        for y, name in enumerate(tests):
             values = times.get(name + suffix)
             if values:
-                points.append(
-                    {"x": x, "y": quantile(values, 0.5), "low": quantile(values, 0.25), "high": quantile(values, 0.75)}
-                )
+                low, median, high = (quantile(values, share) for share in (0.25, 0.5, 0.75))
+                points.append({"x": median, "y": -y, "x_low": low, "x_high": high})
         lines.add(label, points)
     return lines
 
@@ -640,6 +639,9 @@ def differences_of(name, mine, theirs):
             full = {"low": point["y"], "high": point["y"], **point}
             if "x" in point and row.get("x_low"):
                 full = {"x_low": point["x"], "x_high": point["x"], **full}
+            elif full.get("x_low") == full.get("x_high"):  # the figure has no interval of any x
+                full.pop("x_low", None)
+                full.pop("x_high", None)
             wrong = [f"{k} is {v:.6g}, not {row.get(k)}" for k, v in full.items() if not row.get(k) or not same(v, row[k])]
             if wrong:
                 found.append(f"{where}: {', '.join(wrong)}")
