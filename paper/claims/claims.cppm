@@ -42,6 +42,11 @@ struct endpoint {
     [[nodiscard]] estimate log_ratio() const { return mean_of(log_ratios); }
 };
 
+/// What follows the ratio in reports: "times the memory".
+[[nodiscard]] std::string_view unit_of(const endpoint& e);
+/// "1.39", "0.342 to 1.39"
+[[nodiscard]] std::string span_text(double least, double greatest);
+
 /// A ratio that endpoints.toml names before it is measured.
 struct stated_ratio {
     factors where{};       ///< its condition has these factors, and perhaps more
@@ -73,6 +78,8 @@ struct stated_analysis {
     std::vector<stated_claim> claims{};
 };
 [[nodiscard]] const stated_analysis& stated();
+/// The text of endpoints.toml.
+[[nodiscard]] std::string_view stated_text();
 
 struct claim_result {
     std::string id{};  ///< "C1a"
@@ -118,8 +125,8 @@ struct open_choice {
 /// The results of the paper's experiments.
 struct reproduction {
     std::vector<claim_result> claims;
-    std::vector<std::string> headline;  ///< a summary in three sentences
-    std::string disturbance;            ///< a sentence, if the machine was not quiet
+    std::string headline;     ///< the numbers of verdicts, in a sentence
+    std::string disturbance;  ///< a sentence, if the machine was not quiet
     std::vector<open_choice> choices;
     std::vector<named_table> tables;  ///< table 1
     std::vector<figure> figures;      ///< in addition to those of claims
@@ -135,12 +142,15 @@ struct reproduction {
 
 /// "brownian, objects 10,000, displacement 0.1"
 [[nodiscard]] std::string text_of(const factors& where);
+/// The 95 % interval: "0.328 to 0.341"
+[[nodiscard]] std::string range_text(const endpoint& e);
 /// "0.334 (0.328 to 0.341)"
 [[nodiscard]] std::string ratio_text(const endpoint& e);
 /// Three decimals, so that 1.048 does not look like the band's edge; fewer from 10 on, four below 0.01.
 [[nodiscard]] std::string ratio_digits_of(double ratio);
 
-/// The verdict in words, from all endpoints of a claim: one clause per subject, "on drifting cubes: 2.0 times as fast".
+/// The verdict in words, from all endpoints of a claim: one clause per subject, "on drifting cubes: 0.500 times the
+/// time".
 [[nodiscard]] std::string sentence_of(std::span<const endpoint> endpoints, const std::string& lead = {});
 /// The verdict of each claim, with the primary ratio, its interval and its condition.
 [[nodiscard]] table verdict_table(const reproduction& results);
@@ -200,7 +210,7 @@ struct counted_verb {
 };
 /// "Of 14 claims, 2 hold, 6 hold in part and 1 is undecided."; counts of 0 are omitted.
 [[nodiscard]] std::string counts_text(std::string text, std::initializer_list<counted_verb> counts);
-[[nodiscard]] std::vector<std::string> headline_of(std::span<const claim_result> claims);
+[[nodiscard]] std::string headline_of(std::span<const claim_result> claims);
 [[nodiscard]] std::string disturbance_of(std::span<const measurements> machines);
 [[nodiscard]] named_table bands_table(std::span<const draft> drafts);
 [[nodiscard]] table endpoint_table(std::span<const endpoint> endpoints,

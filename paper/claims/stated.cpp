@@ -136,6 +136,10 @@ stated_analysis parse_endpoints() {
 
 }  // namespace
 
+std::string_view stated_text() {
+    return embedded::endpoints_toml;
+}
+
 /// What decides every claim, fixed before the measurements: endpoints.toml, which is embedded in the program.
 const stated_analysis& stated() {
     static const stated_analysis analysis = parse_endpoints();

@@ -107,10 +107,11 @@ void add_triangle_tests(report_section& section, const std::filesystem::path& re
             {fmt::format("errors_{}", group == pair_group::of_floats    ? "float"
                                       : group == pair_group::of_doubles ? "double"
                                                                         : "meshes"),
-             fmt::format("In {}: processor time per pair; the share of wrong results among the pairs of the set in "
-                         "which the method errs most, and there of false negatives among intersecting pairs and of "
-                         "false positives among the others.{}",
-                         title_of(group), numbered),
+             fmt::format(
+                 "In {}: time per pair, as in the figure; the share of wrong results among the pairs of the set in "
+                 "which the method errs most, and there of false negatives among intersecting pairs and of "
+                 "false positives among the others.{}",
+                 title_of(group), numbered),
              error_summary(points, group)});
     }
 }
@@ -221,6 +222,7 @@ void measure_reproduction(const std::filesystem::path& folder, bool quick) {
     };
     unseal_record(folder);
     std::filesystem::remove(folder / failures_name);
+    write_file(folder / stated_name, std::string(stated_text()));
     set_aside_other_studies(folder, studies);
     for (const experiment& e : experiments) {
         note(fmt::format("experiment {} of {}: {}", &e - experiments.data() + 1, count, e.name));
@@ -283,8 +285,7 @@ measurements verified_measurements(const std::filesystem::path& folder, const st
 std::string verdict_text(const reproduction& reproduced) {
     std::string text;
     if (!reproduced.disturbance.empty()) text += wrapped(reproduced.disturbance) + "\n\n";
-    for (const std::string& sentence : reproduced.headline) text += wrapped(sentence) + "\n";
-    text += "\n";
+    text += wrapped(reproduced.headline) + "\n\n";
     for (const claim_result& c : reproduced.claims)
         text += hanging(fmt::format("{:<4} ", c.id), c.claim, paragraph_width()) + "\n" +
                 hanging("     ", text_of(c.verdict) + ". " + c.sentence, paragraph_width()) + "\n";

@@ -41,7 +41,7 @@ std::vector<std::filesystem::path> recorded_files(const std::filesystem::path& f
         for (const std::string& name : names_in(folder / suite))
             if (has_report ? name == "report.json" : name.ends_with(".csv")) add(suite, {name.c_str()});
     }
-    add("", {"failures.txt"});
+    add("", {"failures.txt", stated_name});
     std::ranges::sort(files);
     return files;
 }

@@ -64,6 +64,9 @@ private:
     std::vector<results_source> sources_;
 };
 
+/// The claims' file of a run, as it was when the run was measured.
+inline constexpr const char* stated_name = "endpoints.toml";
+
 inline constexpr const char* unsealed_note =
     "the results are not sealed: the run was not finished, is of an earlier version, or lost its SHA256SUMS. Missing "
     "or altered rows would not be noticed";

@@ -86,9 +86,12 @@ table endpoints_of(const reproduction& reproduced) {
         std::string where;
         for (const auto& [name, value] : e.where) where += (where.empty() ? "" : "; ") + name + "=" + value;
         const auto digits = [](double ratio) { return fmt::format("{:.9g}", ratio); };
-        t.rows.push_back({c.id, e.is_primary ? "primary" : "secondary", where, e.source,
-                          e.expected == expectation::less ? "less" : "not more", digits(e.ratio), digits(e.range.low),
-                          digits(e.range.high), directions[static_cast<std::size_t>(e.direction)],
+        t.rows.push_back({c.id,
+                          e.is_primary   ? "primary"
+                          : e.is_earlier ? "earlier"
+                                         : "secondary",
+                          where, e.source, e.expected == expectation::less ? "less" : "not more", digits(e.ratio),
+                          digits(e.range.low), digits(e.range.high), directions[static_cast<std::size_t>(e.direction)],
                           text_of(e.corrected)});
     };
     for (const claim_result& c : reproduced.claims)
@@ -163,9 +166,7 @@ std::string macros_of(const reproduction& reproduced, const provenance& origin,
     for (const claim_result& c : reproduced.claims) ids += (ids.empty() ? "" : ",") + c.id;
     tex.set_tex("claims", ids);
     tex.set("claims.count", reproduced.claims.size());
-    std::string headline;
-    for (const std::string& sentence : reproduced.headline) headline += (headline.empty() ? "" : " ") + sentence;
-    tex.set("headline", headline);
+    tex.set("headline", reproduced.headline);
     tex.set("disturbance", reproduced.disturbance);
     tex.set("agreement", origin.agreement);
     tex.set("table.bands.caption", reproduced.bands.caption);
@@ -193,6 +194,17 @@ provenance provenance_of(const measurements& results, const reproduction& reprod
     provenance origin;
     const std::filesystem::path& folder = results.folder();
     if (!is_sealed_record(folder)) origin.notes.emplace_back(unsealed_note);
+    const auto text_without_returns = [](const std::filesystem::path& file) {
+        std::string text = text_of_file(file);
+        std::erase(text, '\r');  // copying may have changed the ends of lines
+        return text;
+    };
+    if (const auto file = folder / stated_name; !std::filesystem::exists(file))
+        origin.notes.emplace_back(
+            "exploratory: the run is older than paper/claims/endpoints.toml, which states what decides each claim");
+    else if (text_without_returns(file) != stated_text())
+        origin.notes.emplace_back(
+            "exploratory: what decides each claim has changed since the run, whose endpoints.toml differs");
     std::vector<std::string> experiments;
     for (const claim_result& c : reproduced.claims)
         for (const std::string& experiment : c.experiments)

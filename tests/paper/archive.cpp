@@ -6,6 +6,7 @@
 #include "worlds.hpp"
 
 import aabblab.archive;
+import aabblab.claims;
 import aabblab.errors;
 import aabblab.record;
 
@@ -46,6 +47,7 @@ void write_finished_run(const std::filesystem::path& folder, double ratio = 0.6)
     // Other files in its folder are not part of the record.
     std::ofstream(folder / "extreme/extreme.csv") << "of another version\n";
     std::ofstream(folder / "failures.txt") << "";
+    std::ofstream(folder / "endpoints.toml") << aabblab::stated_text();
     aabblab::seal_record(folder);
 }
 

@@ -589,8 +589,11 @@ def recompute(folder, results):
                 if e["expected"] != ratio["expected"]:
                     differs(f"{claim['id']} {e['where']} expects {ratio['expected']}, not {e['expected']}")
             primaries[claim["id"]] += rows
+        earlier = [e for ratio in stated_ratios(claim, "earlier") for e in of_claim if is_this(e, ratio)]
         for e in of_claim:
-            if (e["endpoint"] == "primary") != any(e is primary for primary in primaries[claim["id"]]):
+            is_primary = any(e is primary for primary in primaries[claim["id"]])
+            is_earlier = any(e is other for other in earlier)
+            if e["endpoint"] != ("primary" if is_primary else "earlier" if is_earlier else "secondary"):
                 differs(f"{claim['id']} {e['where']}: {e['endpoint']} is not its role")
     holm([e for of_claim in primaries.values() for e in of_claim])
     for claim in STATED["claim"]:
