@@ -7,64 +7,33 @@ namespace aabblab {
 
 namespace {
 
-/// Factors from here on have one decimal, smaller ones two.
-constexpr double factor_threshold = 1.5;
-/// Ratios within this factor are reported as a single one.
-constexpr double equality_threshold = 1.1;
-
-/// The nouns in the order of `quantity`; empty where labels name the quantity.
-std::string noun_of(quantity compared) {
-    constexpr std::array nouns{"time", "bytes", "box tests", "", "slowdown", "time relative to the cut's"};
-    return nouns[static_cast<std::size_t>(compared)];
+/// The quantity of an endpoint as a noun, to follow "no more".
+std::string_view noun_of(const endpoint& e) {
+    constexpr std::array<std::string_view, 6> nouns{"time", "memory", "box tests", "work", "slowdown", "time"};
+    return nouns[static_cast<std::size_t>(e.compared)];
 }
 
-/// "1.27", "2.1", "107"; factors near 1 have more decimals.
-std::string times_text(double factor) {
-    if (factor >= 9.95) return grouped(static_cast<std::size_t>(std::llround(factor)));
-    return fmt::format("{:.{}f}", factor, factor < 1.02 ? 3 : factor < factor_threshold ? 2 : 1);
-}
-
-/// "12", or "1.2" for small shares.
-std::string percent_text(double share) {
-    const double percent = 100 * share;
-    return percent < 1.95 ? fmt::format("{:.1f}", percent) : fmt::format("{:.0f}", percent);
-}
-
-/// "1.2 to 3.4", or a single number if both are equal.
-std::string span_text(const std::string& low, const std::string& high) {
-    return low == high ? high : low + " to " + high;
-}
-
-/// The size of ratios on one side of 1: "up to 2.1 times as fast", "1.27 times as long", "34 to 36 % of the bytes".
+/// The ratios of endpoints that compare one quantity: "0.250 to 0.800 times the time", "0.342 times the memory".
 std::string size_text(std::span<const endpoint> endpoints) {
     const auto [least, greatest] = std::ranges::minmax_element(endpoints, {}, &endpoint::ratio);
-    const double low = least->ratio, high = greatest->ratio;
-    if (const quantity compared = least->compared; compared != quantity::time) {
-        const std::string noun = noun_of(compared);
-        return span_text(percent_text(low), percent_text(high)) + " %" + (noun.empty() ? "" : " of the " + noun);
-    }
-    const bool is_faster = high < 1;
-    const double least_factor = is_faster ? 1 / high : low;
-    const double greatest_factor = is_faster ? 1 / low : high;
-    const std::string unit = is_faster ? " times as fast" : " times as long";
-    // Almost equal ratios are reported as one, unless they are near 1, where a small difference matters.
-    if (least_factor >= factor_threshold && greatest_factor / least_factor <= equality_threshold)
-        return times_text(std::sqrt(least_factor * greatest_factor)) + unit;
-    return span_text(times_text(least_factor), times_text(greatest_factor)) + unit;
+    return span_text(least->ratio, greatest->ratio) + " " + std::string(unit_of(*least));
 }
 
-/// The phrase for endpoints (ratios of a claim) with one outcome, `form`: "up to 2.1 times as fast", "no difference".
+/// The phrase for endpoints (ratios of a claim) with one outcome, `form`: "0.476 times the time", "no difference".
 std::string outcome_text(std::span<const endpoint> endpoints, wording form) {
-    if (form == wording::less || form == wording::more) return size_text(endpoints);
-    const quantity compared = endpoints.front().compared;
-    const std::string noun = noun_of(compared);
-    if (form == wording::not_more) return "no more" + (noun.empty() ? "" : " " + noun);
-    if (form == wording::not_less)
-        return (compared == quantity::bytes || compared == quantity::box_tests ? "no fewer" : "no less") +
-               (noun.empty() ? "" : " " + noun);
-    const bool is_named = !noun.empty() && compared != quantity::time;
-    return form == wording::same ? "no difference" + (is_named ? " in the " + noun : "")
-                                 : "undecided" + (is_named ? " (" + noun + ")" : "");
+    const std::string noun(noun_of(endpoints.front()));
+    const bool is_time = endpoints.front().compared == quantity::time;
+    switch (form) {
+        case wording::less:
+        case wording::more: return size_text(endpoints);
+        case wording::not_more: return is_time ? "not slower" : "no more " + noun;
+        case wording::not_less:
+            return is_time ? "not faster"
+                           : (endpoints.front().compared == quantity::box_tests ? "no fewer " : "no less ") + noun;
+        case wording::same: return is_time ? "no difference" : "no difference in the " + noun;
+        case wording::open: break;
+    }
+    return is_time ? "undecided" : noun + " undecided";
 }
 
 /// Consecutive endpoints of a clause with the same outcome.
@@ -107,7 +76,7 @@ std::string range_text(const std::vector<stretch>& stretches, std::size_t i) {
            " of " + values;
 }
 
-/// Outcomes along a factor: "1.30 times as long with 100 objects, 2.0 times as fast with 1,000 or more".
+/// Outcomes along a factor: "1.30 times the time with 100 objects, 0.500 times the time with 1,000 or more".
 std::string ordered_outcomes(std::span<const endpoint> endpoints) {
     const std::vector<stretch> stretches = stretches_of(endpoints);
     std::string text;
@@ -117,7 +86,7 @@ std::string ordered_outcomes(std::span<const endpoint> endpoints) {
     return text;
 }
 
-/// Outcomes without an order: "from 1.2 times as fast to 1.3 times as long"; undecided ratios are only counted.
+/// Outcomes without an order: "0.833 to 1.30 times the time"; undecided ratios are only counted.
 std::string unordered_outcomes(std::vector<endpoint> endpoints) {
     std::string undecided = outcome_text(endpoints, wording::open);
     const std::size_t count = endpoints.size();
@@ -126,13 +95,15 @@ std::string unordered_outcomes(std::vector<endpoint> endpoints) {
     std::ranges::sort(endpoints, {}, &endpoint::ratio);
     const std::vector<stretch> stretches = stretches_of(endpoints);
     const auto text_of = [](const endpoint& e) { return outcome_text({&e, 1}, wording_of(e)); };
-    const std::string text = stretches.size() == 1
-                                 ? outcome_text(stretches.front().endpoints, stretches.front().form)
-                                 : "from " + text_of(endpoints.front()) + " to " + text_of(endpoints.back());
+    const bool has_sizes =
+        wording_of(endpoints.front()) == wording::less && wording_of(endpoints.back()) == wording::more;
+    const std::string text = stretches.size() == 1 ? outcome_text(stretches.front().endpoints, stretches.front().form)
+                             : has_sizes           ? size_text(endpoints)
+                                         : "from " + text_of(endpoints.front()) + " to " + text_of(endpoints.back());
     return text + (open == 0 ? "" : fmt::format(" in {} of {} conditions, {} undecided", count - open, count, open));
 }
 
-/// What was compared, which may be empty, and what was found: "on drifting cubes", "2.0 times as fast".
+/// What was compared, which may be empty, and what was found: "on drifting cubes", "0.500 times the time".
 struct clause {
     std::string label;
     std::string outcomes;
@@ -148,47 +119,24 @@ clause clause_of(std::span<const endpoint> endpoints, const endpoint& member) {
     return {*member.subject, ordered_outcomes(reported)};
 }
 
-/// "Shell sort, on boxes: 1.13 times as long"; without lead and label only the outcomes.
+/// "Shell sort, on boxes: 1.13 times the time"; without lead and label only the outcomes.
 std::string clause_text(const std::string& lead, const clause& c) {
     const std::string label = lead + (lead.empty() || c.label.empty() ? "" : ", ") + c.label;
     return label + (label.empty() ? "" : ": ") + c.outcomes;
 }
 
-const claim_result* claim_named(std::span<const claim_result> claims, const std::string& id) {
-    const auto claim = std::ranges::find(claims, id, &claim_result::id);
-    return claim != claims.end() ? &*claim : nullptr;
-}
-
-/// The part of the headline that compares the improved broad phase with the classic incremental sweep and prune, under
-/// the paper's premise that objects hardly move; empty if it was not measured.
-std::string classic_sweep_text(std::span<const claim_result> claims) {
-    const claim_result* claim = claim_named(claims, "C1a");
-    if (!claim) return "";
-    for (const endpoint& e : claim->primaries)
-        if (value_of(e.where, "over") == "incremental")
-            return ". " + clause_text(fmt::format("Its time with little motion (up to {} edges per frame)",
-                                                  value_of(factors_of(e), "displacement")),
-                                      clause_of({&e, 1}, e));
-    return "";
-}
-
-/// What "undecided" means, to follow a sentence that has this word; otherwise empty.
-std::string meaning_of_undecided_in(const std::string& sentence) {
-    return sentence.find("undecided") == std::string::npos
-               ? ""
-               : " Undecided: the intervals show neither a difference beyond the band nor that there is none.";
-}
-
-/// The clause that reports a claim's first primary endpoint, for the headline.
-clause first_clause(std::span<const claim_result> claims, const std::string& id) {
-    const claim_result* claim = claim_named(claims, id);
-    if (!claim || claim->primaries.empty() || !claim->primaries.front().subject) return {"", "not measured"};
-    std::vector<endpoint> endpoints = claim->primaries;
-    endpoints.insert(endpoints.end(), claim->secondaries.begin(), claim->secondaries.end());
-    return clause_of(endpoints, endpoints.front());
-}
-
 }  // namespace
+
+std::string_view unit_of(const endpoint& e) {
+    constexpr std::array<std::string_view, 6> units{"times the time", "times the memory",   "times the box tests",
+                                                    "times the work", "times the slowdown", "times the time"};
+    return units[static_cast<std::size_t>(e.compared)];
+}
+
+std::string span_text(double least, double greatest) {
+    const std::string low = three_digits(least), high = three_digits(greatest);
+    return low == high ? low : low + " to " + high;
+}
 
 wording wording_of(const endpoint& e) {
     if (e.direction != outcome::undecided) return static_cast<wording>(e.direction);
@@ -236,28 +184,18 @@ std::string sentence_of(std::span<const endpoint> endpoints, const std::string& 
     return text + ".";
 }
 
-/// A summary of three parts: broad phase, narrow phase, number of verdicts of each kind on claims of the paper.
-std::vector<std::string> headline_of(std::span<const claim_result> claims) {
+/// "Of the paper's 19 claims, 5 hold and 4 hold in part."
+std::string headline_of(std::span<const claim_result> claims) {
     const auto is_of_paper = [](const claim_result& c) { return c.of == "paper"; };
     const auto count = [&](verdict_kind v) {
         return std::ranges::count_if(claims, [&](const claim_result& c) { return is_of_paper(c) && c.verdict == v; });
     };
-    const std::string broad_phase =
-        clause_text(
-            "Time of the improved broad phase (Shell sort, axial cut), compared with the traditional one (insertion "
-            "sort, no cut)",
-            first_clause(claims, "C1a")) +
-        classic_sweep_text(claims) + ".";
-    return {broad_phase + meaning_of_undecided_in(broad_phase),
-            clause_text("The compressed tree of the narrow phase, compared with the canonical one",
-                        first_clause(claims, "C7a")) +
-                clause_text("; its queries", first_clause(claims, "C7b")) + ".",
-            counts_text(fmt::format("Of the paper's {} claims", std::ranges::count_if(claims, is_of_paper)),
-                        {{count(verdict_kind::holds), "holds", "hold"},
-                         {count(verdict_kind::in_part), "holds in part", "hold in part"},
-                         {count(verdict_kind::does_not_hold), "does not hold", "do not hold"},
-                         {count(verdict_kind::no_difference), "shows no difference", "show no difference"},
-                         {count(verdict_kind::undecided), "is undecided", "are undecided"}})};
+    return counts_text(fmt::format("Of the paper's {} claims", std::ranges::count_if(claims, is_of_paper)),
+                       {{count(verdict_kind::holds), "holds", "hold"},
+                        {count(verdict_kind::in_part), "holds in part", "hold in part"},
+                        {count(verdict_kind::does_not_hold), "does not hold", "do not hold"},
+                        {count(verdict_kind::no_difference), "shows no difference", "show no difference"},
+                        {count(verdict_kind::undecided), "is undecided", "are undecided"}});
 }
 
 }  // namespace aabblab

@@ -12,11 +12,11 @@ constexpr double most_waiting = 2;
 /// The median difference between successive repeats, in percent.
 constexpr double most_difference = 5;
 
+}  // namespace
+
 std::string range_text(const endpoint& e) {
     return ratio_digits_of(e.range.low) + " to " + ratio_digits_of(e.range.high);
 }
-
-}  // namespace
 
 /// One row per endpoint: the factors in which their conditions differ, the ratio, its interval and its outcome.
 /// @param outcome returns the text of the last column

@@ -8,31 +8,6 @@ namespace aabblab {
 
 namespace {
 
-/// A ratio in the unit of the first pages: a time as a speed, so that half of it is "2 times as fast", and everything
-/// else as the ratio that it is, so that a third of the bytes is "0.333 times the memory".
-struct amount {
-    double value;
-    interval range;  ///< 95 %
-    std::string_view unit;
-};
-
-amount amount_of(const endpoint& e) {
-    constexpr std::array<std::pair<quantity, std::string_view>, 5> units{{{quantity::bytes, "times the memory"},
-                                                                          {quantity::box_tests, "times the box tests"},
-                                                                          {quantity::work, "times the work"},
-                                                                          {quantity::slowdown, "times the slowdown"},
-                                                                          {quantity::relative_time, "times the time"}}};
-    if (e.compared == quantity::time) return {1 / e.ratio, {1 / e.range.high, 1 / e.range.low}, "times as fast"};
-    const auto known = std::ranges::find(units, e.compared, &std::pair<quantity, std::string_view>::first);
-    return {e.ratio, e.range, known == units.end() ? "times as much" : known->second};
-}
-
-/// "1.39", "0.342 to 1.39"
-std::string span_text(double least, double greatest) {
-    const std::string low = three_digits(least), high = three_digits(greatest);
-    return low == high ? low : low + " to " + high;
-}
-
 /// Outcomes of a ratio in the order of the overview, with their words there.
 constexpr std::array<std::pair<support, std::string_view>, 4> outcomes{{{support::favours, "for"},
                                                                         {support::contradicts, "against"},
@@ -43,33 +18,36 @@ std::string outcome_text(support outcome) {
     return std::string(std::ranges::find(outcomes, outcome, &std::pair<support, std::string_view>::first)->second);
 }
 
+/// The outcome of a ratio; it says where only the correction leaves it undecided, which its interval does not show.
+std::string outcome_text(const endpoint& e) {
+    const bool is_by_correction = e.corrected == support::undecided && e.uncorrected != support::undecided;
+    return outcome_text(e.corrected) + (is_by_correction ? " (by Holm's correction)" : "");
+}
+
 /// The colour of a ratio is that of a claim with only this one.
 std::string outcome_class(support outcome) {
     return verdict_class(verdict_of(std::array{outcome}));
 }
 
-/// The amounts of ratios of one outcome, a range for each unit: "1.39 to 3.44 times as fast, 0.342 times the memory".
+/// The ratios of one outcome, a range for each unit: "0.291 to 0.719 times the time, 0.342 times the memory".
 std::string spans_text(std::span<const endpoint> endpoints, support outcome) {
-    std::vector<amount> widest;  // by unit, with the range of the values
+    std::vector<std::pair<std::string_view, interval>> spans;  // by unit
     for (const endpoint& e : endpoints) {
         if (e.corrected != outcome) continue;
-        const amount a = amount_of(e);
-        const auto same_unit = std::ranges::find(widest, a.unit, &amount::unit);
-        if (same_unit == widest.end()) {
-            widest.push_back({a.value, {a.value, a.value}, a.unit});
-        } else {
-            same_unit->range.low = std::min(same_unit->range.low, a.value);
-            same_unit->range.high = std::max(same_unit->range.high, a.value);
-        }
+        const auto same_unit = std::ranges::find(spans, unit_of(e), &std::pair<std::string_view, interval>::first);
+        if (same_unit == spans.end())
+            spans.push_back({unit_of(e), {e.ratio, e.ratio}});
+        else
+            same_unit->second = {std::min(same_unit->second.low, e.ratio), std::max(same_unit->second.high, e.ratio)};
     }
     std::string text;
-    for (const auto& [value, range, unit] : widest)
-        text += fmt::format("{}{} {}", text.empty() ? "" : ", ", span_text(range.low, range.high), unit);
+    for (const auto& [unit, span] : spans)
+        text += fmt::format("{}{} {}", text.empty() ? "" : ", ", span_text(span.low, span.high), unit);
     return text;
 }
 
-/// All primary ratios of a claim in a line: "2 for: 1.39 to 3.44 times as fast; 1 against: 0.279 times as fast".
-std::string amounts_text(const claim_result& c) {
+/// All primary ratios of a claim in a line: "2 for: 0.291 to 0.719 times the time; 1 against: 3.58 times the time".
+std::string ratios_text(const claim_result& c) {
     if (c.primaries.empty()) return "not measured";
     if (c.primaries.size() == 1 && c.missing.empty()) return spans_text(c.primaries, c.primaries.front().corrected);
     std::string text;
@@ -142,19 +120,16 @@ std::string agreement_text(const claim_result& here, const claim_result* there) 
     return (here.verdict == there->verdict ? "agrees" : text_of(there->verdict)) + ", " + agreeing_text(here, *there);
 }
 
-/// "1.395 times as fast", and the interval "1.342 to 1.447".
-std::string amount_text(const amount& a) {
-    return ratio_digits_of(a.value) + " " + std::string(a.unit);
-}
-std::string interval_text(const amount& a) {
-    return ratio_digits_of(a.range.low) + " to " + ratio_digits_of(a.range.high);
+/// "0.717 times the time"
+std::string with_unit(const endpoint& e) {
+    return ratio_digits_of(e.ratio) + " " + std::string(unit_of(e));
 }
 
-/// The published amount, with its outcome if that is another.
+/// The published ratio, with its outcome if that is another.
 std::string published_text(const endpoint& e, const endpoint* published) {
     if (published == nullptr) return "-";
-    const std::string amount = ratio_digits_of(amount_of(*published).value);
-    return published->corrected == e.corrected ? amount : amount + ", " + outcome_text(published->corrected);
+    const std::string ratio = ratio_digits_of(published->ratio);
+    return published->corrected == e.corrected ? ratio : ratio + ", " + outcome_text(published->corrected);
 }
 
 std::string cell(std::string_view kind, const std::string& markup) {
@@ -177,21 +152,20 @@ table summary_table(const reproduction& reproduced, const std::optional<publishe
     table t = empty_table({"", "what is claimed", "in its authors' words", "verdict", "by how much"});
     if (published) t.columns.push_back({"published run", /*is_number=*/false});
     for (const claim_result& c : reproduced.claims) {
-        t.rows.push_back({c.id, c.claim, c.quote, text_of(c.verdict), amounts_text(c)});
+        t.rows.push_back({c.id, c.claim, c.quote, text_of(c.verdict), ratios_text(c)});
         if (published) t.rows.back().push_back(agreement_text(c, published_claim(c, published)));
     }
     return t;
 }
 
-/// Every primary ratio of every claim, in the unit of the summary.
+/// Every primary ratio of every claim.
 table primaries_table(const reproduction& reproduced, const std::optional<published_run>& published) {
-    table t = empty_table({"claim", "where"}, {"times", "95 %"}, {"unit", "outcome"});
+    table t = empty_table({"claim", "where"}, {"ratio", "95 %"}, {"unit", "outcome"});
     if (published) t.columns.push_back({"published run", /*is_number=*/false});
     for (const claim_result& c : reproduced.claims) {
         for (const endpoint& e : c.primaries) {
-            const amount a = amount_of(e);
-            t.rows.push_back({c.id, text_of(e.where), ratio_digits_of(a.value), interval_text(a), std::string(a.unit),
-                              outcome_text(e.corrected)});
+            t.rows.push_back({c.id, text_of(e.where), ratio_digits_of(e.ratio), range_text(e), std::string(unit_of(e)),
+                              outcome_text(e)});
             if (published)
                 t.rows.back().push_back(published_text(e, published_ratio(e, published_claim(c, published))));
         }
@@ -222,14 +196,14 @@ std::string summary_html(const reproduction& reproduced, const std::optional<pub
         rows +=
             element("tr", {{"class", "claim " + verdict_class(c.verdict)}},
                     cell("id", link_to(c)) + cell("said", markup_text(c.claim) + quote) +
-                        cell("word", markup_text(text_of(c.verdict))) + cell("", markup_text(amounts_text(c))) +
+                        cell("word", markup_text(text_of(c.verdict))) + cell("", markup_text(ratios_text(c))) +
                         (published ? cell("", markup_text(agreement_text(c, published_claim(c, published)))) : "")) +
             "\n";
     }
     return element("div", {{"class", "wide"}}, element("table", {{"class", "summary"}}, rows)) + "\n";
 }
 
-/// The primary ratios of some claims as HTML: a row per ratio with its condition, amount, outcome and picture. Of
+/// The primary ratios of some claims as HTML: a row per ratio with its condition, size, outcome and picture. Of
 /// several claims, each has a row above its ratios, with what these have in common.
 std::string primaries_html(std::span<const claim_result> claims, const std::optional<published_run>& published) {
     std::string head = element("th", {}, "where") + element("th", {{"colspan", 2}}, "how much, and its 95 % interval") +
@@ -248,11 +222,9 @@ std::string primaries_html(std::span<const claim_result> claims, const std::opti
         if (c.primaries.empty() && c.missing.empty())
             rows += element("tr", {}, element("td", {{"colspan", columns}}, "not measured")) + "\n";
         for (const endpoint& e : c.primaries) {
-            const amount a = amount_of(e);
             std::string row = cell("", markup_text(has_groups ? own_text(e, c) : text_of(e.where))) +
-                              cell("number", markup_text(amount_text(a))) +
-                              cell("number", markup_text(interval_text(a))) +
-                              cell("word", markup_text(outcome_text(e.corrected)));
+                              cell("number", markup_text(with_unit(e))) + cell("number", markup_text(range_text(e))) +
+                              cell("word", markup_text(outcome_text(e)));
             if (published)
                 row +=
                     cell("number", markup_text(published_text(e, published_ratio(e, published_claim(c, published)))));

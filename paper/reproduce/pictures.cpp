@@ -51,16 +51,14 @@ std::string interval_picture(const endpoint& e) {
     return picture.in_page("interval", "ratio " + ratio_text(e), height);
 }
 
-/// The axis above these intervals. Its numbers are factors in either direction, so that they hold for times as well as
-/// for speeds.
+/// The axis above these intervals.
 std::string interval_axis() {
     constexpr double height = 32;
     svg_picture picture("%");
     picture.text("", {margin, 11}, "\u2190 for the claim");
     picture.text("", {100 - margin, 11}, "against it \u2192", {{"text-anchor", "end"}});
     for (const double ratio : {0.25, 0.5, 1., 2., 4.}) {
-        const std::string factor = fmt::format("{:.0f}", std::max(ratio, 1 / ratio));
-        picture.text("", {x_percent(ratio), 25}, ratio == 1 ? "equal" : factor + "\u00d7", {{"text-anchor", "middle"}});
+        picture.text("", {x_percent(ratio), 25}, fmt::format("{:g}", ratio), {{"text-anchor", "middle"}});
         picture.line("axis", {x_percent(ratio), height - 4}, {x_percent(ratio), height});
     }
     return picture.in_page("interval", "scale of the ratios", height);

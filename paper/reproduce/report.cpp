@@ -58,10 +58,11 @@ std::string paragraph(std::string_view kind, const std::string& markup) {
 /// A sentence on the run: when and where, and how much was measured.
 std::string run_text(const provenance& origin) {
     return fmt::format(
-        "The run: {}, {} size, commit {}, {}, {}. {} rows of {} scenes, each with up to {} seeds; per composition and "
-        "seed up to {} repeats in all, over {} processes. Other machines, compilers and scenes may give other ratios.",
-        origin.date, origin.size, origin.commit, origin.compiler, origin.cpu, grouped(origin.rows), origin.scenes,
-        origin.seeds, origin.repeats, origin.processes);
+        "The run: {}, {} size, commit {}, {} ({}), {}. {} rows of {} scenes, each with up to {} seeds; per composition "
+        "and seed up to {} repeats in all, over {} processes. Other machines, compilers and scenes may give other "
+        "ratios: compare ratios, never times.",
+        origin.date, origin.size, origin.commit, origin.compiler, origin.flags, origin.cpu, grouped(origin.rows),
+        origin.scenes, origin.seeds, origin.repeats, origin.processes);
 }
 
 /// Adds the first page: what was claimed, what holds, and by how much.
@@ -72,16 +73,14 @@ void add_summary(page& out, const reproduction& reproduced, const provenance& or
                  "\n");
     const std::vector<std::string> about = paragraphs_of(embedded::about_md);
     out.paragraph(about.front());
-    // The last sentence of the headline counts the verdicts; the others state the main results in words.
-    if (!reproduced.headline.empty()) out.paragraph(reproduced.headline.back(), "headline");
+    out.paragraph(reproduced.headline, "headline");
+    for (const std::string& note : origin.notes) out.paragraph("Note: " + note + ".", "soft");
     out.add_html(summary_html(reproduced, origin.published));
     // README has the first of these tables.
     for (const table& t : {brief_table(reproduced), summary_table(reproduced, origin.published)})
         out.add_markdown(to_markdown(t) + "\n");
     out.paragraph(about.back(), "soft");
-    for (std::size_t i = 0; i + 1 < reproduced.headline.size(); ++i) out.paragraph(reproduced.headline[i]);
     if (!origin.agreement.empty()) out.paragraph(origin.agreement);
-    for (const std::string& note : origin.notes) out.paragraph("Note: " + note + ".", "soft");
     out.paragraph(run_text(origin), "soft");
 }
 
@@ -89,8 +88,9 @@ void add_summary(page& out, const reproduction& reproduced, const provenance& or
 void add_primaries(page& out, const reproduction& reproduced, const provenance& origin) {
     out.heading("The ratios that decide", "ratios");
     out.paragraph(
-        "Left of the line is for the claim, right of it against; bars are 95 % intervals, and the shaded band makes no "
-        "difference. Some claims ask only that something costs no more, so that equal is for them, too.",
+        "A ratio below 1 is for the claim. Some claims say only that something costs no more: for these, equal is for "
+        "the claim, too. The 95 % interval is that of the ratio alone; outcomes are corrected for the number of ratios "
+        "(Holm), which leaves more of them undecided.",
         "soft");
     out.add_html(primaries_html(reproduced.claims, origin.published));
     out.add_markdown(to_markdown(primaries_table(reproduced, origin.published)) + "\n");
@@ -224,10 +224,11 @@ page report_of(const reproduction& reproduced, std::span<const report_section> s
     }
     out.heading("Provenance", "provenance");
     out.paragraph(
-        "`./aabblab reproduce` measured this and wrote the report. Beside it, endpoints.csv has every ratio, and "
-        "tables "
-        "and figures have files of their own. tests/paper/recompute.py recomputes the verdicts from the rows, "
-        "independently. Each experiment has a manifest: program, processor, system, config and files.");
+        "`./aabblab reproduce`, of the commit of the run, measured; a newer version may have judged. Beside this "
+        "report, "
+        "endpoints.csv has every ratio, and tables and figures have files of their own. tests/paper/recompute.py "
+        "recomputes the verdicts from the rows, independently. Each experiment has a manifest: program, processor, "
+        "system, config and files.");
     for (const provenance::config& config : origin.configs)
         out.folded(config.experiment + "/manifest.json", element("pre", {}, markup_text(config.manifest)));
     return out;

@@ -122,7 +122,7 @@ TEST_CASE("Quick and full runs measure every primary ratio that was stated befor
     }
     // SMB's claim is judged, but not counted among the paper's.
     const std::string count = std::to_string(stated.size() - 1);
-    CHECK(quick.headline.back() == "Of the paper's " + count + " claims, " + count + " hold.");
+    CHECK(quick.headline == "Of the paper's " + count + " claims, " + count + " hold.");
     CHECK(brief_table(quick).rows.size() == stated.size() - 1);
     CHECK(quick.claims.back().of == "SMB");
 }
@@ -180,7 +180,8 @@ TEST_CASE("A claim about what is left open holds in part, and one about all is r
         r.update_ms = p.has("four_one") ? 0.5 : p.has("shell") ? 2 : 1;
     });
     CHECK(text_of(named(sorts, "C3").verdict) == "holds in part");
-    CHECK(holds(named(sorts, "C3").sentence, "with the gaps 4 and 1, at up to 0.1 edges per frame: 2.0 times as fast"));
+    CHECK(holds(named(sorts, "C3").sentence,
+                "with the gaps 4 and 1, at up to 0.1 edges per frame: 0.500 times the time"));
     // Segments pay up to 16 and cost from there on.
     const auto segments = reproduction_where("c4", [](const worlds::played& p, aabblab::row& r) {
         const std::string& partition = p.tested[aabb::strategy_kind::partition];
@@ -222,42 +223,42 @@ TEST_CASE("A sentence states direction, ratio and conditions of endpoints") {
         for (endpoint& e : endpoints) e.compared = compared;
         return aabblab::sentence_of(endpoints);
     };
-    CHECK(text({at("100", 0.5, less)}) == "On boxes: 2.0 times as fast.");
-    CHECK(text({at("100", 0.9, less)}) == "On boxes: 1.11 times as fast.");
-    CHECK(text({at("100", 3, more)}) == "On boxes: 3.0 times as long.");
+    CHECK(text({at("100", 0.5, less)}) == "On boxes: 0.500 times the time.");
+    CHECK(text({at("100", 0.9, less)}) == "On boxes: 0.900 times the time.");
+    CHECK(text({at("100", 3, more)}) == "On boxes: 3.00 times the time.");
     CHECK(text({at("100", 1.004, same)}) == "On boxes: no difference.");
     CHECK(text({at("100", 1.004, undecided)}) == "On boxes: undecided.");
-    CHECK(text({at("100", 0.36, less)}, quantity::bytes) == "On boxes: 36 % of the bytes.");
+    CHECK(text({at("100", 0.36, less)}, quantity::bytes) == "On boxes: 0.360 times the memory.");
     // Numbers are ordered by value, not as words or as in the file.
     CHECK(text({at("1000", 0.8, less), at("100", 1.3, more), at("10000", 0.25, less)}) ==
-          "On boxes: 1.30 times as long with 100 objects, 1.25 to 4.0 times as fast with 1,000 or more objects.");
-    CHECK(
-        text({at("100", 1.6, more), at("1000", 1.2, more), at("10000", 1, same), at("20000", 0.5, less)}) ==
-        "On boxes: 1.20 to 1.6 times as long with up to 1,000 objects, no difference with 10,000 objects, 2.0 times as "
-        "fast with 20,000 objects.");
+          "On boxes: 1.30 times the time with 100 objects, 0.250 to 0.800 times the time with 1,000 or more objects.");
+    CHECK(text({at("100", 1.6, more), at("1000", 1.2, more), at("10000", 1, same), at("20000", 0.5, less)}) ==
+          "On boxes: 1.20 to 1.60 times the time with up to 1,000 objects, no difference with 10,000 objects, 0.500 "
+          "times "
+          "the time with 20,000 objects.");
     std::vector<endpoint> scenes{at("1", 0.4, less), at("2", 1.3, more), at("3", 0.5, less)};
     for (endpoint& e : scenes) e.along.clear();
-    CHECK(text(scenes) == "On boxes: from 2.5 times as fast to 1.30 times as long.");
+    CHECK(text(scenes) == "On boxes: 0.400 to 1.30 times the time.");
     scenes[0].direction = undecided;
-    CHECK(text(scenes) == "On boxes: from 2.0 times as fast to 1.30 times as long in 2 of 3 conditions, 1 undecided.");
+    CHECK(text(scenes) == "On boxes: 0.500 to 1.30 times the time in 2 of 3 conditions, 1 undecided.");
     scenes[1].subject.reset();
-    CHECK(text(scenes) == "On boxes: 2.0 times as fast in 1 of 2 conditions, 1 undecided.");
+    CHECK(text(scenes) == "On boxes: 0.500 times the time in 1 of 2 conditions, 1 undecided.");
     CHECK(aabblab::sentence_of({}) == "There are no measurements that decide it.");
     CHECK(aabblab::sentence_of(std::vector{at("1", 2, more)}, "Per element") ==
-          "Per element, on boxes: 2.0 times as long.");
+          "Per element, on boxes: 2.00 times the time.");
     // If only the claim's margin is decided, the sentence says no more.
     endpoint undecided_region = at("100", 0.97, undecided);
     undecided_region.corrected = support::favours;
-    CHECK(text({undecided_region}) == "On boxes: no more time.");
+    CHECK(text({undecided_region}) == "On boxes: not slower.");
     undecided_region.corrected = support::contradicts;
-    CHECK(text({undecided_region}) == "On boxes: no less time.");
-    CHECK(text({undecided_region}, quantity::bytes) == "On boxes: no fewer bytes.");
+    CHECK(text({undecided_region}) == "On boxes: not faster.");
+    CHECK(text({undecided_region}, quantity::bytes) == "On boxes: no less memory.");
     // Quantities of one subject share its label.
     std::vector<endpoint> quantities{at("1", 1.2, more), at("1", 0.36, less), at("1", 0.009, less)};
     quantities[1].compared = quantity::bytes;
     quantities[2].compared = quantity::slowdown;
     CHECK(aabblab::sentence_of(quantities) ==
-          "On boxes: 1.20 times as long, 36 % of the bytes, 0.9 % of the slowdown.");
+          "On boxes: 1.20 times the time, 0.360 times the memory, 0.00900 times the slowdown.");
 }
 
 TEST_CASE("A verdict depends on the band only if its ratio is close to it") {
@@ -345,9 +346,10 @@ TEST_CASE("A claim that holds from some size on states this size") {
     REQUIRE(c1.missing.size() == 1);
     CHECK(c1.missing.front().starts_with("three_lists: frame_cpu_ms of sort=shell "));
     CHECK(c1.missing.front().ends_with("sweep=all_axes, on brownian, objects 10,000, displacement 0.1"));
-    CHECK(c1.sentence.starts_with(
-        "On cubes that drift by up to 0.1 edges per frame: 2.0 times as long with 100 objects, 10 times as fast with "
-        "1,000 or more objects"));
+    CHECK(
+        c1.sentence.starts_with("On cubes that drift by up to 0.1 edges per frame: 2.00 times the time with 100 "
+                                "objects, 0.100 times the time with "
+                                "1,000 or more objects"));
 }
 
 TEST_CASE("A claim that compares a wrong composition is undecided") {
@@ -415,8 +417,8 @@ TEST_CASE("The whole algorithm is also judged where global search matters") {
     });
     const claim_result& c11 = named(results, "C11");
     CHECK(text_of(c11.verdict) == "holds in part");
-    CHECK(holds(c11.sentence, "where detailed models touch: 1.20 times as long"));
-    CHECK(holds(c11.sentence, "with simple models far apart: 1.30 times as fast"));
+    CHECK(holds(c11.sentence, "where detailed models touch: 1.20 times the time"));
+    CHECK(holds(c11.sentence, "with simple models far apart: 0.767 times the time"));
     CHECK(c11.sentence.ends_with("% with 100,000 simple ones far apart."));
     CHECK(c11.tables.back().content.rows.front().back() == "2.00");
     CHECK(c11.tables.back().content.rows.back().back() == "66.7");
@@ -492,6 +494,17 @@ TEST_CASE("An alternative counts only after the correction for multiple tests") 
         }
     }
     CHECK(any_corrected);
+}
+
+TEST_CASE_METHOD(in_folder, "A report says whether what decides the claims has changed since the run") {
+    const auto report_with = [&](std::string_view endpoints) {
+        std::ofstream(folder / "endpoints.toml") << endpoints;
+        run_well({"reproduce", "--judge", "--out", folder.path()});
+        return bytes_of_file(folder / "report.md");
+    };
+    worlds::write_world(folder.path(), 0.6, 0.05);
+    CHECK_FALSE(holds(report_with(aabblab::stated_text()), "endpoints.toml differs"));
+    CHECK(holds(report_with("[rule]\nmargin = 0.1\n"), "endpoints.toml differs"));
 }
 
 TEST_CASE_METHOD(in_folder, "Every later judgement reports what was wrong in a run") {
