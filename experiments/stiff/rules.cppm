@@ -33,9 +33,12 @@ void run_or_record_failure(stiff_result& result, std::string_view integrator, co
 /// A row that holds if the relative error is within the tolerance.
 [[nodiscard]] stiff_row within(std::string subject, std::string quantity, double measured, double expected,
                                double relative_tolerance) {
-    return {std::move(subject), std::move(quantity), measured,
+    return {std::move(subject),
+            std::move(quantity),
+            measured,
             fmt::format("{} ± {:.3g} %", short_number(expected), 100 * relative_tolerance),
-            verdict_if(std::abs(measured - expected) <= relative_tolerance * std::abs(expected))};
+            verdict_if(std::abs(measured - expected) <= relative_tolerance * std::abs(expected)),
+            expected};
 }
 
 [[nodiscard]] stiff_row at_most(std::string subject, std::string quantity, double measured, double limit) {
@@ -46,6 +49,12 @@ void run_or_record_failure(stiff_result& result, std::string_view integrator, co
 [[nodiscard]] stiff_row at_least(std::string subject, std::string quantity, double measured, double limit) {
     return {std::move(subject), std::move(quantity), measured, "≥ " + short_number(limit),
             verdict_if(measured >= limit)};
+}
+
+[[nodiscard]] stiff_row between(std::string subject, std::string quantity, double measured, double least,
+                                double greatest) {
+    return {std::move(subject), std::move(quantity), measured, short_number(least) + " to " + short_number(greatest),
+            verdict_if(least <= measured && measured <= greatest)};
 }
 
 /// The row if its expectation applies to its subject; otherwise the value is only reported.

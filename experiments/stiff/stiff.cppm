@@ -40,10 +40,12 @@ struct stiff_result {
     }
 };
 
-/// What tests break on purpose, to show that a verdict depends on it: factors of friction and of torques.
+/// What tests break on purpose, to show that a verdict depends on it: factors of friction, of torques, and of a length
+/// that determines the shape of a gear's flanks (the radius of their base circle) or of a nut's thread (its pitch).
 struct stiff_fault {
     double friction = 1;
     double torque = 1;
+    double shape = 1;
 };
 
 struct stiff_setting {

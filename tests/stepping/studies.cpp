@@ -151,6 +151,25 @@ TEST_CASE("a dropped torque, doubled friction and contacts missed in every thous
     CHECK(holds(wrong_in(run_study("rocking", forgetful(1))), "quarter of the period"));
 }
 
+TEST_CASE("other flanks, another pitch and missed contacts change the verdicts of gears and of a nut") {
+    const aabblab::candidate exact = aabblab::default_candidate();
+    // A base circle that is 2 % smaller keeps the mean ratio, which the number of teeth gives, but not the ratio.
+    const std::string flanks = wrong_in(run_study("gears", exact, {.shape = 0.98}));
+    CHECK(holds(flanks, "8 facets: least transmission error"));
+    CHECK(holds(flanks, "16 facets: greatest transmission error"));
+    CHECK_FALSE(holds(flanks, "ratio of the mean speeds"));
+    // Of the play of 100 µm, 15 µm are lost per turn of the nut.
+    const std::string thread = wrong_in(run_study("bolt", exact, {.shape = 1.01}));
+    CHECK(holds(thread, "24 facets: play where vertices meet"));
+    CHECK(holds(thread, "48 facets: least play at every phase"));
+
+    const std::string gears = wrong_in(run_study("gears", forgetful(40)));
+    CHECK(holds(gears, "16 facets: greatest transmission error"));
+    CHECK(holds(gears, "16 facets: ratio of the mean speeds"));
+    const std::string nut = wrong_in(run_study("bolt", forgetful(40)));
+    CHECK(holds(nut, "48 facets: greatest play at every phase"));
+}
+
 TEST_CASE("an engine that misses all contacts lets bodies tunnel") {
     aabblab::candidate blind = aabblab::default_candidate();
     blind.make_local = [](aabb::instrumentation) -> std::unique_ptr<aabb::local_stage> {
