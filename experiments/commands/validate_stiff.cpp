@@ -11,11 +11,17 @@ struct stiff_request {
     std::vector<std::string> studies;
     std::optional<std::string> out;
     bool quick = false;
+    bool methods = false;
 };
 
 int validate_stiff(const stiff_request& request) {
     outlive_reader();
     const std::filesystem::path folder = request.out.value_or(request.quick ? "results/stiff-quick" : "results/stiff");
+    if (request.methods) {
+        compare_stiff_methods(folder, request.studies, request.quick);
+        print("Every number is in " + visible((folder / "methods.csv").string()) + "\n");
+        return 0;
+    }
     const suite_report report = run_stiff_suite(folder, request.studies, request.quick, /*shown=*/true);
     print(report.failures.empty() ? "Everything is as expected.\n"
                                   : std::to_string(report.failures.size()) + " values are not as expected.\n");
@@ -35,6 +41,8 @@ void add_validate_stiff(const command_parser& program) {
     command.optional_argument("STUDY", &request.studies, "Studies to run, from the list below (default all)");
     command.option("--out DIR", &request.out,
                    "Folder of tables and plots (default results/stiff, with --quick results/stiff-quick)");
+    command.flag("--methods", &request.methods,
+                 "Compare what inexact, stale and lost contacts change in each study, instead");
     command.flag("--quick", &request.quick, "Run fewer and shorter simulations, for a first look");
     command.footer([] {
         std::string text = "Studies:\n";

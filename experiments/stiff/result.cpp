@@ -39,6 +39,15 @@ constexpr auto columns_of_point = [](auto& p, auto field) {
 };
 constexpr std::array<std::string_view, 1> later_columns_of_point = {"label"};
 
+constexpr auto columns_of_effect = [](auto& e, auto field) {
+    field("study", e.study);
+    field("method", e.method);
+    field("rules", e.rules);
+    field("turned", e.turned);
+    field("change", any_number(e.change));
+};
+constexpr auto file_of_effects = "methods.csv";
+
 std::filesystem::path file_of(const std::filesystem::path& folder, const stiff_study& study, const char* ending) {
     return folder / (std::string(study.name) + ending);
 }
@@ -74,6 +83,15 @@ std::optional<stiff_result> read_result(const std::filesystem::path& folder, con
     if (!std::filesystem::exists(rows) || !std::filesystem::exists(points)) return std::nullopt;
     return stiff_result{rows_of_file<stiff_row>(rows, columns_of_row),
                         rows_of_file<stiff_point>(points, columns_of_point, later_columns_of_point)};
+}
+
+void write_effects(const std::filesystem::path& folder, std::span<const method_effect> effects) {
+    write_file(folder / file_of_effects, csv_of(effects, columns_of_effect));
+}
+
+std::vector<method_effect> read_effects(const std::filesystem::path& folder) {
+    if (!std::filesystem::exists(folder / file_of_effects)) return {};
+    return rows_of_file<method_effect>(folder / file_of_effects, columns_of_effect);
 }
 
 }  // namespace aabblab

@@ -19,6 +19,7 @@ struct stiff_row {
     double measured = 0;
     std::string rule;  ///< the expectation in words; may be empty
     stiff_verdict verdict = stiff_verdict::reported;
+    double expected = 0;  ///< the value that the rule expects; 0 if that is none or a limit. Not stored
 
     [[nodiscard]] bool holds() const { return verdict != stiff_verdict::fails; }
 };
@@ -50,7 +51,7 @@ struct stiff_fault {
 
 struct stiff_setting {
     bool quick = false;
-    candidate tested;  ///< finds the contacts, unless a study compares methods
+    candidate tested;  ///< finds the contacts, unless the study compares methods
     /// Receives the completed share of a study, from 0 to 1.
     std::function<void(double)> progress = [](double) {};
     stiff_fault fault = {};
@@ -62,6 +63,7 @@ struct stiff_study {
     std::string_view reference;  ///< the source of the expectation
     void (*run)(const stiff_setting& setting, stiff_result& result);
     std::vector<figure> figures{};  ///< the figures of its points, still empty
+    bool compares_methods = false;  ///< whether it chooses its candidates itself
 };
 
 /// All studies, in the order of the report.
@@ -79,5 +81,34 @@ void write_result(const std::filesystem::path& folder, const stiff_study& study,
 [[nodiscard]] candidate default_candidate() {
     return candidate_of(aabb::composition(), true);
 }
+
+/// A candidate that finds nothing in one of `every` queries of two meshes.
+[[nodiscard]] candidate losing_contacts(const candidate& tested, std::size_t every);
+
+/// How the results of a study change if another method finds the contacts.
+struct method_effect {
+    std::string study = {};
+    std::string method = {};
+    std::size_t rules = 0;   ///< rows that have a rule, with exact contacts
+    std::size_t turned = 0;  ///< of these, with another verdict or missing
+    /// The greatest change of a measured value of which the rule expects a value, relative to that; infinite if a value
+    /// is not finite or missing.
+    double change = 0;
+
+    friend bool operator==(const method_effect&, const method_effect&) = default;
+};
+
+/// Compares the results with another method with those with exact contacts; rows match by subject and quantity.
+[[nodiscard]] method_effect effect_of(const stiff_result& exact, const stiff_result& with_method);
+
+/// Runs a study with exact contacts and with each of some methods: an inexact triangle test in two settings, a stale
+/// Verlet list, a coarse tree, and lost contacts.
+[[nodiscard]] std::vector<method_effect> effects_of_methods(const stiff_study& study, const stiff_setting& exact);
+
+/// Writes methods.csv.
+void write_effects(const std::filesystem::path& folder, std::span<const method_effect> effects);
+/// The inverse of `write_effects`; empty if there is no file.
+/// @throws aabb::input_error with file and line if it is malformed.
+[[nodiscard]] std::vector<method_effect> read_effects(const std::filesystem::path& folder);
 
 }  // namespace aabblab

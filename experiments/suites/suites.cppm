@@ -73,6 +73,9 @@ struct suite_report {
                                              bool shown);
 [[nodiscard]] suite_report run_stiff_suite(const std::filesystem::path& folder, const std::vector<std::string>& studies,
                                            bool quick, bool shown);
+/// Compares what each study measures with inexact, stale and lost contacts with what it measures with exact ones.
+/// Writes methods.csv after each study, in which rows of other studies stay, and prints it as a table.
+void compare_stiff_methods(const std::filesystem::path& folder, const std::vector<std::string>& studies, bool quick);
 /// The report from what a suite stored in the folder; empty if that is nothing, or an interrupted extreme suite.
 /// @throws aabb::input_error if the files have another format.
 [[nodiscard]] std::optional<suite_report> stored_report(const std::filesystem::path& folder);

@@ -77,6 +77,25 @@ std::vector<stiff_study> chosen_studies(const std::vector<std::string>& names) {
     return chosen;
 }
 
+/// A row per study and a column per method: how many verdicts differ, and in brackets the greatest change of a value.
+table table_of(std::span<const method_effect> effects) {
+    table t = empty_table({"study"}, {"rules"});
+    for (const method_effect& e : effects)
+        if (std::ranges::find(t.columns, e.method, &column::name) == t.columns.end()) t.columns.push_back({e.method});
+    for (const method_effect& e : effects) {
+        auto row = std::ranges::find(t.rows, e.study, [](const auto& cells) { return cells[0]; });
+        if (row == t.rows.end()) {
+            t.rows.emplace_back(t.columns.size());
+            row = t.rows.end() - 1;
+            (*row)[0] = e.study;
+            (*row)[1] = std::to_string(e.rules);
+        }
+        const auto place = std::ranges::find(t.columns, e.method, &column::name) - t.columns.begin();
+        (*row)[static_cast<std::size_t>(place)] = fmt::format("{} ({:.1g})", e.turned, e.change);
+    }
+    return t;
+}
+
 /// The names of studies with results in the folder that this version does not have, sorted.
 std::vector<std::string> unknown_studies(const std::filesystem::path& folder) {
     std::vector<std::string> names;
@@ -214,6 +233,32 @@ suite_report run_stiff_suite(const std::filesystem::path& folder, const std::vec
     }
     for (const std::string& sentence : report.failures) note(sentence);
     return report;
+}
+
+void compare_stiff_methods(const std::filesystem::path& folder, const std::vector<std::string>& studies, bool quick) {
+    std::filesystem::create_directories(folder);
+    std::vector<method_effect> effects = read_effects(folder);
+    for (const stiff_study& study : chosen_studies(studies)) {
+        if (study.compares_methods) {
+            note("left out: " + std::string(study.name) + " compares methods by itself");
+            continue;
+        }
+        std::erase_if(effects, [&](const method_effect& e) { return e.study == study.name; });
+        progress done("comparing methods in " + std::string(study.name), 1000);  // thousandths
+        std::ranges::move(
+            effects_of_methods(study, {quick, default_candidate(),
+                                       [&](double share) { done.update(static_cast<std::size_t>(1000 * share)); }}),
+            std::back_inserter(effects));
+        std::ranges::stable_sort(effects, {}, [](const method_effect& e) {
+            return std::ranges::find(stiff_studies(), e.study, &stiff_study::name) - stiff_studies().begin();
+        });
+        // Write after each study, so that a crash does not lose finished ones.
+        write_effects(folder, effects);
+    }
+    print_paragraph(
+        "Rules whose verdict is not that with exact contacts, and in brackets the greatest change of a value with a "
+        "closed form, in parts of it:");
+    print("\n" + to_text(table_of(effects), output_width()) + "\n");
 }
 
 /// The report on what the folder stores: a whole report (earlier versions), rows of the extreme suite, or results of

@@ -38,7 +38,7 @@ TEST_CASE("An invalid command line is rejected in one sentence with status 2") {
             {{"list", "nothing"}, "list: unknown kind 'nothing'; see aabblab list --help\n"},
             {{"nothing_at_all"}, "unknown command 'nothing_at_all'; see aabblab --help\n"},
             {{"scene", "brownian", "--xyzzyq", "3"}, "scene: unknown option '--xyzzyq'; see aabblab scene --help\n"},
-            {{"validate", "stiff", "a", "--xyzzyq"}, "'--xyzzyq'; expected one of --help, --out, --quick\n"},
+            {{"validate", "stiff", "a", "--xyzzyq"}, "'--xyzzyq'; expected one of --help, --methods, --out, --quick\n"},
             {{"validate", "stiff", "stak"}, "unknown study 'stak'; did you mean 'stack'?"},
             {{"scene", "xyzzyq", "--out", "a.aabbs"}, "unknown scene 'xyzzyq'; see aabblab list scenes\n"},
             {{"pairs", "x", "--engine", "xyzzyq"}, "unknown engine 'xyzzyq'; see aabblab list engines\n"},

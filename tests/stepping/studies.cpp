@@ -37,17 +37,7 @@ std::string wrong_in(const aabblab::stiff_result& result) {
 
 /// The default candidate, but one in `every` detections finds nothing.
 aabblab::candidate forgetful(std::size_t every) {
-    aabblab::candidate tested = aabblab::default_candidate();
-    tested.make_local =
-        [every, make = tested.make_local](aabb::instrumentation counted) -> std::unique_ptr<aabb::local_stage> {
-        return std::make_unique<aabb::altered_meshes>(
-            aabb::alterations{.all_pairs =
-                                  [every, calls = std::size_t{0}](aabb::pair_list& pairs) mutable {
-                                      if (++calls % every == 0) pairs.clear();
-                                  }},
-            make(counted));
-    };
-    return tested;
+    return losing_contacts(aabblab::default_candidate(), every);
 }
 
 }  // namespace
@@ -166,8 +156,36 @@ TEST_CASE("other flanks, another pitch and missed contacts change the verdicts o
     const std::string gears = wrong_in(run_study("gears", forgetful(40)));
     CHECK(holds(gears, "16 facets: greatest transmission error"));
     CHECK(holds(gears, "16 facets: ratio of the mean speeds"));
-    const std::string nut = wrong_in(run_study("bolt", forgetful(40)));
+    // Threads touch in several contacts at once, so that a missed one changes nothing; half of them must be missed.
+    CHECK(wrong_in(run_study("bolt", forgetful(40))).empty());
+    const std::string nut = wrong_in(run_study("bolt", forgetful(2)));
+    INFO(nut);
     CHECK(holds(nut, "48 facets: greatest play at every phase"));
+}
+
+TEST_CASE("the effect of a method counts verdicts that turn and the greatest change of an expected value") {
+    aabblab::stiff_result exact;
+    exact.rows = {{"a", "speed (m/s)", 2.01, "2 ± 1 %", aabblab::stiff_verdict::holds, 2},
+                  {"a", "error", 1e-9, "≤ 1e-6", aabblab::stiff_verdict::holds},
+                  {"b", "speed (m/s)", 4, "4 ± 1 %", aabblab::stiff_verdict::holds, 4},
+                  {"b", "steps", 7, ""}};
+    REQUIRE(effect_of(exact, exact) == aabblab::method_effect{.rules = 3});
+    aabblab::stiff_result other = exact;
+    other.rows[0].measured = 1.91;
+    other.rows[0].verdict = aabblab::stiff_verdict::fails;
+    other.rows[1].measured = 1e-7;  // a hundred times the error, but there is no value to compare it with
+    other.rows[3].measured = 8;
+    const aabblab::method_effect changed = effect_of(exact, other);
+    REQUIRE(changed.turned == 1);
+    REQUIRE(changed.change > 0.0499999);
+    REQUIRE(changed.change < 0.0500001);
+    other.rows.pop_back();
+    other.rows.pop_back();  // the simulation of b ended early
+    REQUIRE(effect_of(exact, other) ==
+            aabblab::method_effect{.rules = 3, .turned = 2, .change = std::numeric_limits<double>::infinity()});
+    other = exact;
+    other.rows[2].measured = std::numeric_limits<double>::quiet_NaN();
+    REQUIRE(effect_of(exact, other).change == std::numeric_limits<double>::infinity());
 }
 
 TEST_CASE("an engine that misses all contacts lets bodies tunnel") {

@@ -298,7 +298,9 @@ stiff_study dropped_study() {
         "the trajectory with exact contacts; energy errors that fall with the order of the integrator; SimBenchmark's "
         "elastic 666 test (leggedrobotics/SimBenchmark, data/666-elastic/sample.csv), simulators with impulses; the "
         "authors of RAI made the benchmark",
-        &run_dropped, figures()};
+        &run_dropped,
+        figures(),
+        /*compares_methods=*/true};
 }
 
 }  // namespace aabblab

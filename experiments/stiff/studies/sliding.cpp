@@ -140,7 +140,8 @@ stiff_study sliding_study() {
                            "together by a 100,000th, relative to the load. Methods that keep it are not drawn.",
                 .x = {"displacement (sizes)"},
                 .y = {"force (relative to the load)"},
-                .lines = {{"exact", series_style::level, {{0, 1}}}}}}};
+                .lines = {{"exact", series_style::level, {{0, 1}}}}}},
+        /*compares_methods=*/true};
 }
 
 }  // namespace aabblab
