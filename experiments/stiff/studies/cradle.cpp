@@ -44,6 +44,11 @@ double speed_of(const simulation& row, std::size_t ball) {
     return row.state().velocity[3 * ball];
 }
 
+/// The implicit midpoint detects contacts in each of its iterations, and has the order of Verlet.
+bool is_left_out(const integrator_info& i, const stiff_setting& setting) {
+    return setting.quick && i.name == "implicit_midpoint";
+}
+
 }  // namespace
 
 /// Across gaps every ball hits the next one alone and gives it (1+e)/2 of its speed. Touching balls with springs share
@@ -60,6 +65,7 @@ void run_cradle(const stiff_setting& setting, stiff_result& result) {
         const double end = 2 * static_cast<double>(balls) * (gap / last_speed + contact_time());
         for (const integrator_info& i : integrators()) {
             if (i.stable_below == 0) continue;  // explicit Euler gains energy in every contact
+            if (is_left_out(i, setting)) continue;
             run_or_record_failure(result, i.name, [&] {
                 const std::string subject = std::string(i.name) + ", e " + short_number(restitution);
                 simulation row(row_of_balls(gap, damping), setting, i, /*tolerance=*/1e-9);
@@ -79,7 +85,7 @@ void run_cradle(const stiff_setting& setting, stiff_result& result) {
         }
     }
     for (const integrator_info& i : integrators()) {
-        if (i.order != 2 || i.adaptive) continue;
+        if (i.order != 2 || i.adaptive || is_left_out(i, setting)) continue;
         simulation row(row_of_balls(/*gap=*/0, /*damping=*/0), setting, i);
         while (row.state().time < 4 * static_cast<double>(balls) * contact_time()) row.advance(step());
         for (const std::size_t b : {std::size_t{0}, balls - 2, balls - 1})
@@ -92,7 +98,8 @@ stiff_study cradle_study() {
     return {
         "cradle",
         "Five balls of 1 kg in a row; the first hits the next one at 1 m/s. With gaps between them the impacts "
-        "follow each other. Touching balls on springs disperse the impact; their speeds are only shown",
+        "follow each other. Touching balls on springs disperse the impact; their speeds are only shown. --quick "
+        "leaves out the implicit midpoint",
         "closed form of impacts one by one: the last ball gets ((1+e)/2)⁴ of the speed, with the restitution e of a "
         "spring and dashpot that do not pull",
         &run_cradle};
