@@ -79,6 +79,32 @@ void write_off(const aabb::mesh& mesh, const std::filesystem::path& file);
 /// more than a million frames without objects.
 [[nodiscard]] std::unique_ptr<aabb::box_scene> open_recording(const std::filesystem::path& file);
 
+/// An array of an .npy file, in row-major order.
+template <class Number>
+struct number_array {
+    std::vector<std::size_t> shape;
+    std::vector<Number> values;
+};
+/// Reads an array of integers, of 16 to 64 bits.
+/// @throws aabb::input_error if the file is no array, ends early, or has other values.
+[[nodiscard]] number_array<std::int64_t> read_npy_integers(const std::filesystem::path& file);
+/// Reads an array of floats or doubles.
+[[nodiscard]] number_array<double> read_npy_reals(const std::filesystem::path& file);
+/// The header of an .npy file, of the same length for every shape.
+/// @param type of the values, as NumPy writes it: "<u4"
+[[nodiscard]] std::string npy_header(std::string_view type, std::span<const std::size_t> shape);
+
+/// The endings of files of boxes: .aabbs, a recording; .csv; .npy.
+[[nodiscard]] bool is_file_of_boxes(const std::filesystem::path& file);
+/// Opens a file of boxes in the format of its ending. A table has rows of six coordinates, the least and the greatest
+/// x, y and z, perhaps preceded by the object, or by frame and object; an array has the shape (frames, objects, 6) or
+/// (frames, objects, 2, 3), or for one frame the same without frames. Boxes are floats if all coordinates are.
+/// @throws aabb::input_error with the file, and in text the line, if a frame lacks an object or a box is invalid
+[[nodiscard]] std::unique_ptr<aabb::box_scene> open_boxes(const std::filesystem::path& file);
+/// Writes the scene to its end in the format of the file's ending. `progress` receives the number of frames done.
+void write_boxes(aabb::box_scene& scene, const std::filesystem::path& file,
+                 const std::function<void(std::size_t)>& progress);
+
 /// Records the scene to its end. `progress` receives the number of frames done. A failure leaves no partial file.
 /// @throws aabb::input_error if the file cannot be written or would not fit on the disk.
 void write_recording(aabb::box_scene& scene, const std::string& name, const std::string& type,

@@ -194,7 +194,7 @@ scene_choice scene_of_arguments(const std::vector<std::string>& arguments) {
             first +
             " is a config, which explain and run take as their only argument; expected a recording, "
             "meshes, or a motion file and its meshes");
-    if (first.ends_with(".aabbs")) {
+    if (is_file_of_boxes(first)) {
         if (arguments.size() > 1)
             throw aabb::input_error("a recording is a scene of its own, so give " + first + " alone");
         return {.kind = "recording", .settings = {{"file", first}}, .meshes = {}, .seed = std::nullopt};

@@ -18,6 +18,21 @@ void sort_by(auto rows, auto key_of) {
         [key_of](const auto& p, const auto& q) { return key_of(p) < key_of(q); });
 }
 
+/// Cells of CSV as those of JSON: words in quotes, null for empty ones.
+std::string quoted_cells(std::string_view cells) {
+    std::string text;
+    while (!cells.empty()) {
+        const std::string_view cell = cells.substr(0, cells.find(','));
+        const bool is_last = cell.size() == cells.size();
+        const bool is_number =
+            !cell.empty() && (std::isdigit(static_cast<unsigned char>(cell.front())) || cell.front() == '-');
+        text += is_number ? std::string(cell) : cell.empty() ? "null" : '"' + std::string(cell) + '"';
+        cells.remove_prefix(is_last ? cell.size() : cell.size() + 1);
+        if (!is_last) text += cells.empty() ? ",null" : ",";
+    }
+    return text;
+}
+
 void append(std::string& text, char before, const aabb::vec3d& p) {
     for (const double x : p.at) text += before + aabb::shortest(x);
 }
@@ -71,17 +86,51 @@ void require_each_once(std::span<const aabb::contact> contacts, std::string_view
 }
 
 number_table::number_table(const std::filesystem::path& file, std::string_view header)
-    : file_(file), text_(std::string(header) + "\n") {}
+    : file_(file),
+      format_(file.extension() == ".npy"    ? format::npy
+              : file.extension() == ".json" ? format::json
+                                            : format::csv),
+      columns_(static_cast<std::size_t>(std::ranges::count(header, ',')) + 1) {
+    if (format_ == format::npy && header.find("kind") != std::string_view::npos)
+        throw aabb::input_error(file.string() +
+                                ": an .npy file has integers only, so --geometry needs a file of CSV or .json");
+    text_ = format_ == format::npy   ? array_header()
+            : format_ == format::csv ? std::string(header) + "\n"
+                                     : "{\"columns\":[" + quoted_cells(header) + "],\n\"rows\":[";
+}
+
+/// The header of the array; the number of its rows is known at the end.
+std::string number_table::array_header() const {
+    return npy_header("<u4", std::array{rows_, columns_});
+}
 
 void number_table::add(std::initializer_list<std::uint32_t> row, std::string_view further) {
-    fmt::format_to(std::back_inserter(text_), "{}{}{}\n", fmt::join(row, ","), further.empty() ? "" : ",", further);
+    switch (format_) {
+        case format::csv:
+            fmt::format_to(std::back_inserter(text_), "{}{}{}\n", fmt::join(row, ","), further.empty() ? "" : ",",
+                           further);
+            break;
+        case format::npy:
+            text_.append(reinterpret_cast<const char*>(row.begin()), row.size() * sizeof *row.begin());
+            break;
+        case format::json:
+            fmt::format_to(std::back_inserter(text_), "{}\n[{}{}{}]", rows_ == 0 ? "" : ",", fmt::join(row, ","),
+                           further.empty() ? "" : ",", quoted_cells(further));
+            break;
+    }
+    ++rows_;
     if (text_.size() < 1U << 16U) return;
     file_.write(text_);
     text_.clear();
 }
 
 void number_table::commit() {
+    if (format_ == format::json) text_ += "\n]}\n";
     file_.write(text_);
+    if (format_ == format::npy) {
+        const std::string header = array_header();
+        file_.overwrite(0, header.data(), header.size());
+    }
     file_.commit();
 }
 

@@ -33,11 +33,13 @@ void require_each_once(std::span<const aabb::contact> contacts, std::string_view
 inline constexpr std::string_view intersection_columns =
     "kind,corners,error_x,error_y,error_z,x1,y1,z1,x2,y2,z2,x3,y3,z3,x4,y4,z4,x5,y5,z5,x6,y6,z6";
 
-/// A CSV file of integers, which appears only when it is committed.
+/// A file of integers in the format of its ending: .npy, an array of unsigned integers of 32 bits; .json, an object
+/// with columns and rows; otherwise CSV. It appears only when it is committed.
 class number_table {
 public:
     /// @param header the column names, such as "frame,a,b"
-    /// @throws aabb::input_error if the file cannot be written, as do `add` and `commit`.
+    /// @throws aabb::input_error if the file cannot be written, as do `add` and `commit`, or if an array cannot have
+    /// the columns.
     number_table(const std::filesystem::path& file, std::string_view header);
     /// Appends a row.
     /// @param further comma-separated cells after the numbers, or empty
@@ -45,7 +47,14 @@ public:
     void commit();
 
 private:
+    enum class format : std::uint8_t { csv, npy, json };
+
+    [[nodiscard]] std::string array_header() const;
+
     output_file file_;
+    format format_;
+    std::size_t columns_;
+    std::size_t rows_ = 0;
     std::string text_;  // rows not yet written
 };
 

@@ -8,7 +8,7 @@ namespace aabblab {
 
 struct recording {
     static constexpr std::string_view name = "recording";
-    static constexpr std::string_view summary = "the boxes of a recording (.aabbs), frame by frame";
+    static constexpr std::string_view summary = "the boxes of a file (.aabbs, .csv, .npy), frame by frame";
 
     struct config {
         std::string file;
@@ -16,7 +16,7 @@ struct recording {
     static constexpr std::tuple parameters{
         aabb::text_parameter{"file", &config::file, "the path of a file", "the recording"}};
 
-    [[nodiscard]] static std::unique_ptr<aabb::box_scene> open(const config& c) { return open_recording(c.file); }
+    [[nodiscard]] static std::unique_ptr<aabb::box_scene> open(const config& c) { return open_boxes(c.file); }
 };
 
 }  // namespace aabblab
