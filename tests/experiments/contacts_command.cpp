@@ -62,6 +62,23 @@ TEST_CASE_METHOD(with_mesh_file, "contacts --geometry writes the same intersecti
     CHECK(bytes_of_file(folder / "c.csv") == rows);
 }
 
+TEST_CASE_METHOD(with_mesh_file, "poses may be quaternions, and columns have names, commas and any order") {
+    const auto digest = [&](const std::string& text) {
+        const auto summary = json_of({"contacts", folder.write("m.txt", text), mesh, "--json"});
+        CHECK(summary["contacts"] > 0);
+        return summary["digest"];
+    };
+    // Object 1 is turned by a right angle about z, where a quaternion of whole numbers is exact.
+    const auto matrices = digest(
+        "0 0  1 0 0 0  0 1 0 0  0 0 1 0\n"
+        "0 1  0 -1 0 0.25  1 0 0 0.125  0 0 1 0\n");
+    CHECK(digest("0 0 0 0 0 0 0 0 1\n0 1 0.25 0.125 0 0 0 3 3\n") == matrices);
+    CHECK(digest("object,frame,qw,qx,qy,qz,tx,ty,tz,mass\n0,0,2,0,0,0,0,0,0,7\n1,0,1,0,0,1,0.25,0.125,0,7\n") ==
+          matrices);
+    CHECK(digest("frame object r00 r01 r02 r10 r11 r12 r20 r21 r22 tx ty tz\n0 0 1 0 0 0 1 0 0 0 1 0 0 0\n"
+                 "0 1 0 -1 0 1 0 0 0 0 1 0.25 0.125 0\n") == matrices);
+}
+
 TEST_CASE_METHOD(with_mesh_file, "a frame omitted from a motion file repeats the previous frame") {
     const std::string still = "0 0 1 0 0 0 0 1 0 0 0 0 1 0\n0 1 1 0 0 0.2 0 1 0 0.1 0 0 1 0\n";
     const auto contacts = [&](const std::string& text) {
