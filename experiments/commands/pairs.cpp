@@ -17,7 +17,7 @@ struct pairs_request {
     std::string recording;
     method_options method{{aabb::stage::global_search}};
     std::optional<std::string> out;
-    bool json = false;
+    bool swept = false, json = false;
 };
 
 /// The result of --json: totals over all frames, and the time of each frame.
@@ -44,7 +44,8 @@ std::string text_of(const pairs_request& request, const search_method& method, c
 /// Finds the overlapping boxes of a recording in each frame, writes them to the file of --out, and prints totals.
 void find_pairs(const pairs_request& request) {
     const search_choice choice = request.method.choice();
-    scene_frames scene(open_recording(request.recording));
+    std::unique_ptr<aabb::box_scene> boxes = open_boxes(request.recording);
+    scene_frames scene(request.swept ? swept(std::move(boxes)) : std::move(boxes));
     search_method method = method_of(choice, traits_of(scene));
     std::optional<number_table> rows;
     if (request.out) {
@@ -61,9 +62,13 @@ void add_pairs(const command_parser& program) {
     const command_parser command =
         program.add_command("pairs", "Run the broad phase on a recording: find every pair of overlapping boxes");
     auto& request = command.set_action(find_pairs);
-    command.argument("SCENE", &request.recording, "Recording of boxes (.aabbs)");
+    command.argument("SCENE", &request.recording, "Boxes: a recording (.aabbs), or a .csv or .npy file");
     request.method.add_to(command, "these strategies");
-    command.option("--out FILE", &request.out, "CSV file for the pairs: rows frame,a,b");
+    command.option("--out FILE", &request.out, "File for the pairs, rows frame,a,b: CSV, or .npy or .json");
+    command.flag(
+        "--swept", &request.swept,
+        "Search swept boxes, each the box of an object in this frame and the previous one, so that no pair that "
+        "meets on a straight way between frames is lost");
     command.flag("--json", &request.json, "Print the summary as JSON");
 }
 

@@ -93,6 +93,10 @@ struct frames_result {
 [[nodiscard]] frames_result search_frames(scene_frames& scene, search_method& method, number_table* rows,
                                           const hit_choice& hits = {});
 
+/// The scene with swept boxes: each is the box of an object in this frame and in the previous one, so that objects that
+/// meet on a straight way between the two overlap.
+[[nodiscard]] std::unique_ptr<aabb::box_scene> swept(std::unique_ptr<aabb::box_scene> scene);
+
 /// The pairs of triangles that a query of one mesh with itself reports.
 enum class self_pairs {
     intersecting,  ///< those with more in common than shared corners and the edge between two
@@ -108,6 +112,8 @@ struct mesh_query {
     bool by_pose = false;      ///< whether rows include the pose
     std::size_t repeats = 1;   ///< each runs all poses
     std::string between = {};  ///< "a.off against b.off", for messages
+    /// Receives the reported pairs of a pose in order, perhaps in parts; may be empty.
+    std::function<void(std::uint32_t pose, std::span<const aabb::index_pair> pairs)> take = {};
 };
 
 struct intersecting_pair {

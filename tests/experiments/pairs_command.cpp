@@ -39,6 +39,19 @@ TEST_CASE_METHOD(in_folder, "pairs reports the pairs of brute force with every c
     REQUIRE(std::ranges::is_sorted(records));
 }
 
+TEST_CASE_METHOD(in_folder, "pairs --swept finds what meets between two frames, in float and in double") {
+    for (const char* x : {"7", "7.1"}) {  // 7.1 is no float
+        CAPTURE(x);
+        // Box 0 jumps over box 1 between frames 0 and 1, and then rests.
+        const std::string scene =
+            folder.write("boxes.csv", std::string("0,0,0,0,0,1,1,1\n0,1,4,0,0,5,1,1\n1,0,") + x +
+                                          ",0,0,8,1,1\n1,1,4,0,0,5,1,1\n2,0," + x + ",0,0,8,1,1\n2,1,4,0,0,5,1,1\n");
+        CHECK(json_of({"pairs", scene, "--json"})["pairs"] == 0);
+        run_well({"pairs", scene, "--swept", "--out", folder / "pairs.csv"});
+        CHECK(bytes_of_file(folder / "pairs.csv") == "frame,a,b\n1,0,1\n");
+    }
+}
+
 TEST_CASE_METHOD(in_folder, "pairs prints the scene and the composition") {
     const program_result result = run_well({"pairs", recording_in(folder, "2"), "--sort", "insertion"});
     REQUIRE(holds(result.out, "2 objects, 4 frames"));
