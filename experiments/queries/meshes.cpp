@@ -187,6 +187,7 @@ private:
     /// Adds sorted pairs to the digest, and, as the query asks, with their intersections to the rows and to the result.
     void add_sorted(std::span<const aabb::index_pair> pairs) {
         digest_.add(pose_, pairs);
+        if (query_.take) query_.take(pose_, pairs);
         if (!rows_ && !query_.hits.geometry && query_.ask != query_kind::first) return;
         for (const aabb::index_pair pair : pairs) {
             intersecting_pair row{pair, {}};

@@ -50,6 +50,7 @@ const std::vector<std::string> rooms = {
     "experiments/configs",
     "experiments/trials",
     "experiments/queries",
+    "experiments/checking",
     "experiments/measures",
     "experiments/race",
     "experiments/calibrate",

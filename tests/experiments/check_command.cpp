@@ -1,0 +1,341 @@
+#include <catch2/generators/catch_generators.hpp>
+
+#include "program_json.hpp"
+
+#include "csv_rows.hpp"
+
+namespace {
+
+using rows = std::vector<std::array<std::int64_t, 3>>;  ///< frame, a, b
+
+/// A recording of drifting cubes with the list of its pairs.
+struct checked_scene {
+    std::string recording;
+    rows pairs;
+};
+
+checked_scene scene_in(const temporary_folder& folder, const std::string& kind = "brownian",
+                       const std::vector<std::string>& more = {"--objects", "60", "--density", "0.3"}) {
+    checked_scene scene{folder / "scene.aabbs", {}};
+    run_well(joined({"scene", kind, "--frames", "5", "--out", scene.recording}, more));
+    run_well({"pairs", scene.recording, "--out", folder / "right.csv"});
+    for (const auto& r : numbers_of(bytes_of_file(folder / "right.csv")))
+        scene.pairs.push_back(
+            {static_cast<std::int64_t>(r[0]), static_cast<std::int64_t>(r[1]), static_cast<std::int64_t>(r[2])});
+    REQUIRE(scene.pairs.size() > 30);
+    return scene;
+}
+
+std::string text_of(const rows& list, const std::string& header = "frame,a,b\n", char separator = ',') {
+    std::string text = header;
+    for (const auto& [frame, a, b] : list)
+        text += std::to_string(frame) + separator + std::to_string(a) + separator + std::to_string(b) + "\n";
+    return text;
+}
+
+/// The report on a list as JSON. The exit status must agree with it.
+nlohmann::json checked(const std::vector<std::string>& arguments) {
+    const program_result result = run_program(joined({"check", "--json"}, arguments));
+    INFO(result.err);
+    REQUIRE((result.status == 0 || result.status == 1));
+    auto report = nlohmann::json::parse(result.out);
+    REQUIRE(report["right"] == (result.status == 0));
+    return report;
+}
+
+/// The only sentence on what the wrong pairs have in common.
+std::string pattern_of(const nlohmann::json& report) {
+    INFO(report.dump());
+    REQUIRE(report["patterns"].size() == 1);
+    return report["patterns"][0];
+}
+
+std::string npy_of(const rows& list) {
+    std::string header =
+        "{'descr': '<i8', 'fortran_order': False, 'shape': (" + std::to_string(list.size()) + ", 3), }";
+    header.resize(118, ' ');
+    header.back() = '\n';
+    std::string bytes = std::string("\x93NUMPY\x01\x00", 8) + '\x76' + '\0' + header;
+    bytes.append(reinterpret_cast<const char*>(list.data()), list.size() * sizeof list[0]);
+    return bytes;
+}
+
+/// Recordings of boxes that are all in one frame, or in several.
+void write_boxes(const std::string& file, const std::vector<std::vector<std::array<float, 6>>>& frames) {
+    std::string bytes(256, '\0');
+    const auto add = [&](auto value) { bytes.append(reinterpret_cast<const char*>(&value), sizeof value); };
+    add(static_cast<std::int32_t>(frames[0].size()));
+    add(static_cast<std::int32_t>(frames.size() - 1));
+    add(std::int32_t{0});
+    add(std::int32_t{0});
+    const auto add_box = [&](const std::array<float, 6>& b) {
+        for (int k = 0; k < 6; ++k) {
+            add(b[static_cast<std::size_t>(k)]);
+            if (k % 3 == 2) add(0.F);
+        }
+    };
+    add_box({-1e6F, -1e6F, -1e6F, 1e6F, 1e6F, 1e6F});
+    for (const auto& frame : frames)
+        for (const auto& box : frame) add_box(box);
+    std::ofstream(file, std::ios::binary) << bytes;
+}
+
+}  // namespace
+
+TEST_CASE_METHOD(in_folder, "check accepts right lists in every format, order of rows, ids and columns") {
+    const checked_scene scene = scene_in(folder);
+    rows mixed = scene.pairs;
+    std::ranges::reverse(mixed);
+    for (std::size_t i = 0; i < mixed.size(); i += 3) std::swap(mixed[i][1], mixed[i][2]);
+    rows columns = mixed;
+    for (auto& [first, second, third] : columns) std::swap(first, third);  // b, a, frame
+    std::string quoted = "\"id\";\"Step\";\"I\";\"J\"\n";
+    for (const auto& [frame, a, b] : mixed)
+        quoted += "7;" + std::to_string(frame) + ";" + std::to_string(a) + ";" + std::to_string(b) + "\n";
+    for (const auto& [name, text] : {std::pair<std::string, std::string>("a.csv", text_of(scene.pairs)),
+                                     {"b.txt", text_of(mixed, "", ' ')},
+                                     {"c.csv", "# from an engine\n\n" + text_of(mixed, "", '\t')},
+                                     {"d.csv", text_of(columns, "b,a,frame\n")},
+                                     {"e.csv", quoted},
+                                     {"f.npy", npy_of(mixed)}}) {
+        CAPTURE(name);
+        const auto report = checked({scene.recording, folder.write(name, text)});
+        CHECK(report["right"] == true);
+        CHECK(report["rows"] == scene.pairs.size());
+        CHECK(report["correct"] == scene.pairs.size());
+    }
+    CHECK(holds(run_well({"check", scene.recording, folder / "a.csv"}).out, "The list is right."));
+}
+
+TEST_CASE_METHOD(in_folder, "check counts each kind of error, by class, with its place") {
+    const checked_scene scene = scene_in(folder);
+    rows list = scene.pairs;
+    const auto [frame, a, b] = list[5];
+    list.erase(list.begin() + 5);
+    list.push_back({0, list[0][2], list[0][1]});  // a duplicate in the other order
+    list.push_back({1, 4, 4});
+    list.push_back({1, 4, 60});
+    list.push_back({1, -1, 3});
+    list.push_back({6, 0, 1});
+    const auto report = checked({scene.recording, folder.write("list.csv", text_of(list))});
+    CHECK(report["false_negatives"] == 1);
+    CHECK(report["false_positives"] == 0);
+    CHECK(report["duplicates"] == 1);
+    CHECK(report["self_pairs"] == 1);
+    CHECK(report["unknown_ids"] == 2);
+    CHECK(report["unknown_frames"] == 1);
+    REQUIRE(report["first"].size() == 1);
+    CHECK(report["first"][0]["frame"] == frame);
+    CHECK(report["first"][0]["a"] == a);
+    CHECK(report["first"][0]["b"] == b);
+    CHECK(report["first"][0]["listed"] == false);
+    CHECK(report["frames"] == nlohmann::json::array({{frame, 1, 0}}));
+    const program_result text = run_program({"check", scene.recording, folder / "list.csv"});
+    CHECK(text.status == 1);
+    for (const char* part :
+         {"false negatives            1  pairs", "false positives            0  rows",
+          "duplicates                 1  rows that repeat a pair", "self pairs                 1  rows with one object",
+          "unknown ids                2  rows with an id that no object has",
+          "unknown frames             1  rows with a frame that the scene"})
+        CHECK(holds(text.out, part));
+}
+
+TEST_CASE_METHOD(in_folder, "check names what is wrong with a list as a whole") {
+    const checked_scene scene = scene_in(folder);
+    const auto pattern = [&](const std::function<void(rows&)>& damage) {
+        rows list = scene.pairs;
+        damage(list);
+        return pattern_of(checked({scene.recording, folder.write("list.csv", text_of(list))}));
+    };
+    CHECK(holds(pattern([](rows& list) { list.clear(); }), "is empty"));
+    CHECK(holds(pattern([](rows& list) {
+                    for (auto& [frame, a, b] : list) ++a, ++b;
+                }),
+                "with 1 taken from each"));
+    CHECK(holds(pattern([](rows& list) {
+                    for (auto& [frame, a, b] : list) --a, --b;
+                }),
+                "with 1 added to each"));
+    CHECK(holds(pattern([](rows& list) {
+                    for (auto& row : list) ++row[0];
+                }),
+                "Frames are off by one"));
+    CHECK(holds(pattern([](rows& list) {  // frame 0 twice, without the last frame
+                    rows late;
+                    for (const auto& [frame, a, b] : list) {
+                        if (frame == 0) late.push_back({0, a, b});
+                        if (frame < 5) late.push_back({frame + 1, a, b});
+                    }
+                    list = late;
+                }),
+                "The list is late"));
+    CHECK(holds(pattern([](rows& list) {
+                    rows constant;
+                    for (std::int64_t frame = 0; frame < 6; ++frame)
+                        for (const auto& [of, a, b] : list)
+                            if (of == std::min<std::int64_t>(frame, 2)) constant.push_back({frame, a, b});
+                    list = constant;
+                }),
+                "The list is not renewed: from frame 3 on, it stays that of frame 2"));
+    CHECK(holds(pattern([](rows& list) {
+                    rows renewed;  // in every third frame
+                    for (std::int64_t frame = 0; frame < 6; ++frame)
+                        for (const auto& [of, a, b] : list)
+                            if (of == frame / 3 * 3) renewed.push_back({frame, a, b});
+                    list = renewed;
+                }),
+                "renewed only now and then"));
+    CHECK(holds(pattern([](rows& list) { std::erase_if(list, [](const auto& row) { return row[0] > 3; }); }),
+                "ends with frame 3 and is right up to there"));
+    CHECK(holds(pattern([](rows& list) {
+                    const rows once = list;
+                    for (const auto& [frame, a, b] : once) list.push_back({frame, b, a});
+                }),
+                "Every pair is listed twice"));
+    CHECK(holds(pattern([](rows& list) {  // each frame after the second lacks more
+                    std::array<int, 6> dropped{};
+                    std::erase_if(list, [&](const auto& row) {
+                        return row[0] > 1 && dropped[static_cast<std::size_t>(row[0])]++ < row[0] - 1;
+                    });
+                }),
+                "right up to frame 1; then its errors grow"));
+}
+
+TEST_CASE_METHOD(in_folder, "check tells touching boxes and rounded ones from others") {
+    const float next = std::nextafter(2.F, 3.F);
+    // Object 1 touches 0; 2 has a gap of one unit to 0; 3 overlaps 0 by much; 4 overlaps it on x and z only.
+    const std::string file = folder / "boxes.aabbs";
+    write_boxes(file, {{{0, 0, 0, 2, 2, 2},
+                        {2, 0, 0, 3, 2, 2},
+                        {next, 0, 0, 4, -0.F + 2, 2},
+                        {1, 1, 1, 1.5F, 1.5F, 1.5F},
+                        {0, 9, 0, 2, 9.5F, 2}}});
+    // The overlaps are 0-1, 0-3 and 1-2.
+    const auto report = [&](const std::string& text) { return checked({file, folder.write("list.csv", text)}); };
+    REQUIRE(report("0 1\n0 3\n1 2\n")["right"] == true);
+    const auto open = report("0 3\n1 2\n");
+    CHECK(open["classes"]["touching"] == nlohmann::json::array({1, 0}));
+    CHECK(open["first"][0]["description"] == "touching on x");
+    CHECK(holds(pattern_of(open), "Every false negative touches"));
+    const auto rounded = report("0 1\n0 3\n1 2\n0 2\n");
+    CHECK(rounded["classes"]["within 1 unit in the last place"] == nlohmann::json::array({0, 1}));
+    CHECK(holds(pattern_of(rounded), "list is of rounded boxes"));
+    CHECK(holds(rounded["first"][0]["shapes"][1].get<std::string>(), "2: x 0x1.000002p+1 to 0x1p+2"));
+    const auto untested = report("0 1\n0 3\n1 2\n0 4\n");
+    CHECK(untested["classes"]["beyond 16"] == nlohmann::json::array({0, 1}));
+    CHECK(holds(pattern_of(untested), "y may not be tested"));
+    const auto deep = report("0 1\n1 2\n");
+    CHECK(deep["first"][0]["description"] == "an overlap of 0.5 on x");
+    CHECK(deep["patterns"].empty());
+}
+
+TEST_CASE_METHOD(in_folder, "check compares triangles of two meshes, at poses, and of one with itself") {
+    const std::vector<std::string> meshes{"icosphere:triangles=80", "torus_knot:triangles=200"};
+    const std::string poses = folder.write("poses.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 0.25 0 1 0 0 0 0 1 0.125\n");
+    run_well(joined(joined({"collide"}, meshes), {"--poses", poses, "--out", folder / "right.csv"}));
+    const std::string right = bytes_of_file(folder / "right.csv");
+    const auto check = [&](const std::string& text) {
+        return checked(joined(meshes, {folder.write("list.csv", text), "--poses", poses}));
+    };
+    CHECK(check(right)["right"] == true);
+    // The last row is missing, and a row is wrong.
+    const std::string damaged = right.substr(0, right.rfind('\n', right.size() - 2) + 1) + "0,0,199\n";
+    const auto report = check(damaged);
+    CHECK(report["false_negatives"] == 1);
+    CHECK(report["false_positives"] == 1);
+    std::uint64_t classified = 0;
+    for (const auto& counts : report["classes"])
+        classified += counts[0].get<std::uint64_t>() + counts[1].get<std::uint64_t>();
+    CHECK(classified == 2);
+    CHECK(report["first"][0]["shapes"].size() == 2);
+    std::string exchanged = "pose,b,a\n" + right.substr(right.find('\n') + 1);
+    CHECK(holds(pattern_of(check(exchanged)), "ids are exchanged"));
+
+    for (const char* self : {"--self", "--self=all", "--self=no-adjacent"}) {
+        CAPTURE(self);
+        const std::string mesh = "noise_sphere:triangles=320";
+        run_well({"collide", mesh, self, "--out", folder / "self.csv"});
+        CHECK(checked({mesh, folder / "self.csv", self})["right"] == true);
+    }
+}
+
+TEST_CASE_METHOD(in_folder, "check runs a program and reduces its error to two boxes or triangles") {
+    // A program in Python that leaves out pairs which touch on x.
+    const std::string program = folder.write("open.py", R"(
+import struct, sys
+with open(sys.argv[1], "rb") as file: data = file.read()
+objects, last = struct.unpack_from("<2i", data, 256)
+with open(sys.argv[2], "w") as out:
+    for frame in range(last + 1):
+        boxes = [struct.unpack_from("<8f", data, 304 + 32 * (frame * objects + i)) for i in range(objects)]
+        for a in range(objects):
+            for b in range(a + 1, objects):
+                p, q = boxes[a], boxes[b]
+                if p[0] < q[4] and q[0] < p[4] and all(p[k] <= q[4 + k] and q[k] <= p[4 + k] for k in (1, 2)):
+                    print(frame, a, b, file=out)
+)");
+    std::vector<std::vector<std::array<float, 6>>> frames(4);
+    for (std::size_t f = 0; f < frames.size(); ++f)
+        for (std::size_t i = 0; i < 30; ++i) {
+            const auto x = static_cast<float>(3 * i + (i == 17 && f == 2 ? 2 : 0));
+            frames[f].push_back({x, 0, 0, x + 1, 1, 1});
+        }
+    frames[2][18][0] = frames[2][17][3];
+    const std::string scene = folder / "scene.aabbs", smallest = folder / "smallest.aabbs";
+    write_boxes(scene, frames);
+    const std::string command = "python3 " + program;
+    const program_result result = run_program({"check", scene, "--command", command, "--smallest", smallest});
+    INFO(result.out + result.err);
+    REQUIRE(result.status == 1);
+    CHECK(holds(result.out, "Every false negative touches"));
+    CHECK(holds(result.out, "2 objects in 1 frame"));
+    CHECK(holds(result.out, "aabblab check " + smallest + " --command '" + command + "'"));
+    // The printed line repeats the error, and keeps the smallest scene.
+    const std::string bytes = bytes_of_file(smallest);
+    CHECK(bytes.size() == 304 + 2 * 32);
+    const program_result again = run_program({"check", smallest, "--command", command, "--smallest", smallest});
+    CHECK(again.status == 1);
+    CHECK(bytes_of_file(smallest) == bytes);
+
+    // A program that finds no triangles at all.
+    const program_result meshes = run_program({"check", "icosphere:triangles=80", "icosphere:triangles=20", "--command",
+                                               "sh -c ': > \"$3\"' sh", "--smallest", folder / "small"});
+    INFO(meshes.out + meshes.err);
+    REQUIRE(meshes.status == 1);
+    CHECK(holds(meshes.out, "2 triangles"));
+    for (const char* name : {"small_a.off", "small_b.off"}) CHECK(holds(bytes_of_file(folder / name), "OFF\n3 1 0\n"));
+}
+
+TEST_CASE_METHOD(in_folder, "The program in the handbook writes a right list") {
+    const std::string handbook = bytes_of_file(AABBLAB_CONFIGS "/../README.md");
+    const std::size_t begin = handbook.find("```python\n") + 10;
+    const std::string program = folder.write("my.py", handbook.substr(begin, handbook.find("```", begin) - begin));
+    const checked_scene scene = scene_in(folder);
+    CHECK(holds(run_well({"check", scene.recording, "--command", "python3 " + program}).out, "The list is right."));
+}
+
+TEST_CASE_METHOD(in_folder, "check rejects what is no list, and arguments that do not fit, in one sentence") {
+    const checked_scene scene = scene_in(folder);
+    const auto rejected = [&](const std::vector<std::string>& arguments, const std::string& sentence) {
+        CHECK(holds(run_refused(joined({"check"}, arguments)).err, sentence));
+    };
+    const auto list = [&](const std::string& text) { return folder.write("list.csv", text); };
+    rejected({scene.recording, list("0,1,2\n0,1\n")}, "list.csv:2: expected 3 columns, found 2");
+    rejected({scene.recording, list("frame,a,b\n0,1,x\n")}, "list.csv:2: expected an integer, found 'x'");
+    rejected({scene.recording, list("0,1,2,3\n")}, "list.csv:1: expected a,b or frame,a,b");
+    rejected({scene.recording, list("w,h,d,e\n")}, "names no columns a and b");
+    rejected({scene.recording, list("body0,body1,frame\n1,2,0\n")}, "names no columns a and b");
+    rejected({scene.recording, list("0,1.5,2\n0,1,2\n")}, "list.csv:1: expected an integer, found '1.5'");
+    rejected({scene.recording, "--command", "true", "--smallest", "a.npy"}, "expected the ending of the scene, .aabbs");
+    rejected({"none.aabbs", "--command", "true"}, "none.aabbs");
+    rejected({scene.recording, list("0,1\n")}, "the list has no frames, but the scene has 6");
+    rejected({scene.recording, folder.write("no.npy", "PK")}, "no.npy: is not an .npy file");
+    rejected({scene.recording, folder / "none.csv"}, "none.csv");
+    rejected({scene.recording}, "expected a list of pairs after the scene, or --command");
+    rejected({"icosphere", folder / "list.csv"},
+             "expected boxes (.aabbs, .csv, .npy), two meshes, or one mesh with --self");
+    rejected({scene.recording, folder / "list.csv", "--self"}, "poses and --self are of meshes");
+    rejected({"icosphere", folder / "list.csv", "--self=alle"}, "all");
+    rejected({scene.recording, "--command", "exit 3; :"}, "ended with status 3");
+    rejected({scene.recording, "--command", "true"}, "wrote no list of pairs");
+}
