@@ -124,9 +124,10 @@ function(aabblab_registry)
         PUBLIC FILE_SET CXX_MODULES BASE_DIRS ${CMAKE_CURRENT_SOURCE_DIR} ${CMAKE_CURRENT_BINARY_DIR}
                FILES registry/registry.cppm
                      registry/composed.cppm
+                     registry/distance_stages.cppm
                      selection/auto_detector.cppm
                      selection/selection.cppm
                      ${to}/kinds.cppm
-        PRIVATE registry/registry.cpp selection/auto_detector.cpp selection/selection.cpp ${to}/catalog.cpp ${units})
+        PRIVATE registry/registry.cpp registry/distance_stages.cpp selection/auto_detector.cpp selection/selection.cpp ${to}/catalog.cpp ${units})
     target_link_libraries(aabblab_registry PUBLIC aabblab_core PRIVATE aabblab_strategies)
 endfunction()

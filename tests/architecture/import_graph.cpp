@@ -16,6 +16,7 @@ const std::vector<std::string> rooms = {
     "modules/eigen",
     "modules/digest",
     "modules/global_search",
+    "modules/distance_stage",
     "modules/local_detection",
     "modules/pipeline",
     "strategies/columns",
@@ -28,6 +29,7 @@ const std::vector<std::string> rooms = {
     "strategies/build",
     "strategies/tree",
     "strategies/triangle",
+    "strategies/distance",
     "strategies/registry",
     "strategies/selection",
     "validation/engines",
@@ -76,7 +78,8 @@ struct dependency {
 };
 
 /// Rooms that expose one module, of their own name, and hide all others.
-const std::set<std::string> hiding_rooms = {"strategies/columns", "strategies/split_mesh", "strategies/wide_tree"};
+const std::set<std::string> hiding_rooms = {"strategies/columns", "strategies/split_mesh", "strategies/wide_tree",
+                                            "strategies/distance"};
 
 /// Whether the module is one that its room hides.
 bool is_hidden(const dependency& d) {

@@ -1,0 +1,209 @@
+module aabb.distance.exact_distance;
+
+import aabb.distance.exact_integer;
+
+namespace aabb {
+
+namespace {
+
+/// A term of a coordinate: a product of two doubles, exactly.
+struct product_of_doubles {
+    unsigned_wide magnitude = 0;
+    int exponent = 0;
+    bool is_negative = false;
+
+    product_of_doubles() = default;
+    product_of_doubles(double x, double y) noexcept {
+        const odd_double p(x), q(y);
+        magnitude = unsigned_wide{p.mantissa} * q.mantissa;
+        exponent = p.exponent + q.exponent;
+        is_negative = p.is_negative != q.is_negative;
+    }
+
+    /// The exponent of a power of two above the magnitude, which is not 0.
+    [[nodiscard]] int end() const noexcept {
+        const auto high = static_cast<std::uint64_t>(magnitude >> 64U);
+        const auto low = static_cast<std::uint64_t>(magnitude);
+        return exponent +
+               (high != 0 ? 64 + static_cast<int>(std::bit_width(high)) : static_cast<int>(std::bit_width(low)));
+    }
+};
+
+/// The terms of a corner's coordinates: on each axis three products and the translation.
+using corner_terms = std::array<std::array<product_of_doubles, 4>, 3>;
+
+corner_terms terms_of(const pose& at, const vec3d& vertex) noexcept {
+    corner_terms terms;
+    for (std::size_t k = 0; k < 3; ++k) {
+        for (std::size_t j = 0; j < 3; ++j) terms[k][j] = {at.rotation[3 * k + j], vertex[static_cast<int>(j)]};
+        terms[k][3] = {at.translation[static_cast<int>(k)], 1};
+    }
+    return terms;
+}
+
+/// All terms of two triangles and of a length, and the range of their bits.
+struct pair_terms {
+    std::array<corner_terms, 6> corners;
+    product_of_doubles length;
+    int unit = std::numeric_limits<int>::max();  // 2^unit divides every term
+    int end = std::numeric_limits<int>::min();   // every term is below 2^end
+
+    pair_terms(const pose_pair& poses, const triangle3d& s, const triangle3d& t, double d) noexcept : length(d, 1) {
+        note(length);
+        for (std::size_t i = 0; i < 6; ++i) {
+            const int corner = static_cast<int>(i % 3);
+            corners[i] = i < 3 ? terms_of(poses.a, s[corner]) : terms_of(poses.b, t[corner]);
+            for (const auto& along : corners[i])
+                for (const product_of_doubles& term : along) note(term);
+        }
+        if (end < unit) unit = end = 0;  // all are zero
+    }
+
+    void note(const product_of_doubles& term) noexcept {
+        if (term.magnitude == 0) return;
+        unit = std::min(unit, term.exponent);
+        end = std::max(end, term.end());
+    }
+};
+
+template <class Integer>
+struct exact_vector {
+    std::array<Integer, 3> at;
+
+    friend exact_vector operator-(const exact_vector& p, const exact_vector& q) noexcept {
+        return {{p.at[0] - q.at[0], p.at[1] - q.at[1], p.at[2] - q.at[2]}};
+    }
+};
+
+template <class Integer>
+Integer dot(const exact_vector<Integer>& p, const exact_vector<Integer>& q) noexcept {
+    return p.at[0] * q.at[0] + p.at[1] * q.at[1] + p.at[2] * q.at[2];
+}
+template <class Integer>
+exact_vector<Integer> cross(const exact_vector<Integer>& p, const exact_vector<Integer>& q) noexcept {
+    return {{p.at[1] * q.at[2] - p.at[2] * q.at[1], p.at[2] * q.at[0] - p.at[0] * q.at[2],
+             p.at[0] * q.at[1] - p.at[1] * q.at[0]}};
+}
+
+/// The distances of the features of two triangles, as the class comment of `disjoint_triangles` lists them.
+template <class Integer>
+class exact_features {
+public:
+    explicit exact_features(const pair_terms& terms) noexcept {
+        for (std::size_t i = 0; i < 6; ++i)
+            for (std::size_t k = 0; k < 3; ++k)
+                for (const product_of_doubles& term : terms.corners[i][k])
+                    if (term.magnitude != 0)
+                        corners_[i].at[k] =
+                            corners_[i].at[k] + Integer(term.magnitude, term.exponent - terms.unit, term.is_negative);
+    }
+
+    /// Calls `take` with numerator and denominator of the squared distance of each pair of features, until it returns
+    /// true.
+    /// @returns whether it did
+    template <class Take>
+    bool each_squared_distance(const Take& take) const noexcept {
+        for (std::size_t i = 0; i < 3; ++i)
+            for (std::size_t j = 0; j < 3; ++j) {
+                const vector &a = corners_[i], &b = corners_[(i + 1) % 3];
+                const vector &c = corners_[3 + j], &e = corners_[3 + (j + 1) % 3];
+                if (corner_and_edge(a, c, e, take) || corner_and_edge(c, a, b, take) || edges(a, b, c, e, take))
+                    return true;
+            }
+        for (std::size_t i = 0; i < 3; ++i)
+            if (corner_and_face(corners_[i], 3, take) || corner_and_face(corners_[3 + i], 0, take)) return true;
+        return false;
+    }
+
+private:
+    using vector = exact_vector<Integer>;
+
+    /// From a corner p to the beginning of an edge from a to b, and to its interior.
+    template <class Take>
+    static bool corner_and_edge(const vector& p, const vector& a, const vector& b, const Take& take) noexcept {
+        const vector w = p - a, u = b - a;
+        if (take(dot(w, w), Integer(1, 0, false))) return true;
+        const Integer along = dot(w, u), length = dot(u, u);
+        if (along.sign() <= 0 || length <= along) return false;
+        const vector x = cross(w, u);
+        return take(dot(x, x), length);
+    }
+
+    /// Of the interiors of two edges that are not parallel, ab and ce. The nearest points a + s u and c + t v of their
+    /// lines have w = c - a = s u - t v + r n, so that s n² = (w × v)·n, t n² = (w × u)·n and r n² = w·n.
+    template <class Take>
+    static bool edges(const vector& a, const vector& b, const vector& c, const vector& e, const Take& take) noexcept {
+        const vector u = b - a, v = e - c, w = c - a;
+        const vector n = cross(u, v);
+        const Integer square = dot(n, n);
+        if (square.sign() == 0) return false;
+        const auto is_inside = [&](const Integer& along) { return along.sign() >= 0 && along <= square; };
+        if (!is_inside(dot(cross(w, v), n)) || !is_inside(dot(cross(w, u), n))) return false;
+        const Integer volume = dot(w, n);
+        return take(volume * volume, square);
+    }
+
+    /// Of a corner and the interior of a face, whose first corner is given.
+    template <class Take>
+    bool corner_and_face(const vector& p, std::size_t face, const Take& take) const noexcept {
+        const vector& origin = corners_[face];
+        const vector u = corners_[face + 1] - origin, v = corners_[face + 2] - origin, w = p - origin;
+        const vector n = cross(u, v);
+        const Integer square = dot(n, n);
+        if (square.sign() == 0) return false;
+        const Integer along_u = dot(cross(w, v), n), along_v = dot(cross(u, w), n);
+        if (along_u.sign() < 0 || along_v.sign() < 0 || !(along_u + along_v <= square)) return false;
+        const Integer volume = dot(w, n);
+        return take(volume * volume, square);
+    }
+
+    std::array<vector, 6> corners_{};
+};
+
+/// Calls `compute` with features in integers that are wide enough. A coordinate of four terms below 2^end is below
+/// 2^(bits + 2), a difference 2^(bits + 3), a component of a normal 2^(2 bits + 7), a volume 2^(3 bits + 12), and its
+/// square, times that of nothing else, 2^(6 bits + 24); d² times a squared normal is below 2^(6 bits + 16). A sum or a
+/// product may take one limb more before its leading zeros are dropped. The greatest range is that of products of
+/// doubles, from 2^-2148 to 2^2048.
+template <class Compute>
+auto in_integers(const pair_terms& terms, const Compute& compute) noexcept {
+    constexpr std::size_t narrow = 24, wide = 400;
+    const auto limbs = static_cast<std::size_t>(6 * (terms.end - terms.unit) + 24) / 64 + 3;
+    if (limbs <= narrow) return compute(exact_integer<narrow>());
+    return compute(exact_integer<wide>());
+}
+
+}  // namespace
+
+bool disjoint_triangles::are_within(double d) const noexcept {
+    const pair_terms terms(poses_, s_, t_, d);
+    return in_integers(terms, [&]<class Integer>(const Integer& /*zero*/) {
+        const Integer bound = terms.length.magnitude == 0
+                                  ? Integer()
+                                  : Integer(terms.length.magnitude, terms.length.exponent - terms.unit, false);
+        const Integer square = bound * bound;
+        return exact_features<Integer>(terms).each_squared_distance(
+            [&](const Integer& numerator, const Integer& denominator) { return numerator <= square * denominator; });
+    });
+}
+
+/// Numerator and denominator are rounded once, and so is their quotient: 3.01 u are less than 2^-51.
+scaled_double disjoint_triangles::squared_distance() const noexcept {
+    const pair_terms terms(poses_, s_, t_, 0);
+    return in_integers(terms, [&]<class Integer>(const Integer& /*zero*/) {
+        std::optional<scaled_double> least;
+        exact_features<Integer>(terms).each_squared_distance([&](const Integer& numerator, const Integer& denominator) {
+            const auto [p, p_exponent] = numerator.rounded_magnitude();
+            const auto [q, q_exponent] = denominator.rounded_magnitude();
+            int exponent = 0;
+            const double mantissa = std::frexp(p / q, &exponent);
+            const scaled_double quotient{mantissa, exponent + p_exponent - q_exponent + 2 * terms.unit};
+            if (!least || std::pair(quotient.exponent, quotient.mantissa) < std::pair(least->exponent, least->mantissa))
+                least = quotient;
+            return false;  // continues
+        });
+        return *least;
+    });
+}
+
+}  // namespace aabb

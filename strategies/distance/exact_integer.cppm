@@ -1,0 +1,142 @@
+export module aabb.distance.exact_integer;
+
+import aabb.std;
+
+export namespace aabb {
+
+__extension__ using unsigned_wide = unsigned __int128;
+
+/// A finite double as ± mantissa · 2^exponent with an odd mantissa; mantissa 0 for zero.
+struct odd_double {
+    std::uint64_t mantissa = 0;
+    int exponent = 0;
+    bool is_negative = false;
+
+    explicit odd_double(double x) noexcept {
+        const auto bits = std::bit_cast<std::uint64_t>(x);
+        const auto biased = static_cast<int>(bits >> 52U & 0x7ffU);
+        mantissa = bits & 0xf'ffff'ffff'ffffU;
+        if (biased != 0) mantissa |= std::uint64_t{1} << 52U;
+        if (mantissa == 0) return;
+        const int zeros = std::countr_zero(mantissa);
+        mantissa >>= static_cast<unsigned>(zeros);
+        exponent = std::max(biased, 1) - 1075 + zeros;
+        is_negative = std::signbit(x);
+    }
+};
+
+/// An exact integer by its sign and its magnitude, whose limbs are stored without leading zeros, so that small numbers
+/// take little time. Callers choose a capacity that holds every intermediate result.
+/// @tparam Capacity in limbs of 64 bits; of a sum one limb more than its terms have, of a product as many as both have
+template <std::size_t Capacity>
+class exact_integer {
+public:
+    exact_integer() = default;
+    /// ± magnitude · 2^shift.
+    exact_integer(unsigned_wide magnitude, int shift, bool is_negative) noexcept : is_negative_(is_negative) {
+        const auto first = static_cast<std::size_t>(shift) / 64;
+        const unsigned bits = static_cast<unsigned>(shift) % 64;
+        const unsigned_wide low = unsigned_wide{static_cast<std::uint64_t>(magnitude)} << bits;
+        const unsigned_wide high = (unsigned_wide{static_cast<std::uint64_t>(magnitude >> 64U)} << bits) + (low >> 64U);
+        limb_[first] = static_cast<std::uint64_t>(low);
+        limb_[first + 1] = static_cast<std::uint64_t>(high);
+        limb_[first + 2] = static_cast<std::uint64_t>(high >> 64U);
+        set_size(first + 3);
+    }
+
+    [[nodiscard]] int sign() const noexcept { return size_ == 0 ? 0 : is_negative_ ? -1 : 1; }
+
+    [[nodiscard]] friend exact_integer operator+(const exact_integer& p, const exact_integer& q) noexcept {
+        return sum(p, q, q.is_negative_);
+    }
+    [[nodiscard]] friend exact_integer operator-(const exact_integer& p, const exact_integer& q) noexcept {
+        return sum(p, q, !q.is_negative_);
+    }
+    [[nodiscard]] friend exact_integer operator*(const exact_integer& p, const exact_integer& q) noexcept {
+        exact_integer product;
+        if (p.size_ == 0 || q.size_ == 0) return product;
+        for (std::size_t i = 0; i < p.size_; ++i) {
+            std::uint64_t carry = 0;
+            for (std::size_t j = 0; j < q.size_; ++j) {
+                const unsigned_wide digit = unsigned_wide{p.limb_[i]} * q.limb_[j] + product.limb_[i + j] + carry;
+                product.limb_[i + j] = static_cast<std::uint64_t>(digit);
+                carry = static_cast<std::uint64_t>(digit >> 64U);
+            }
+            product.limb_[i + q.size_] = carry;
+        }
+        product.is_negative_ = p.is_negative_ != q.is_negative_;
+        product.set_size(p.size_ + q.size_);
+        return product;
+    }
+    [[nodiscard]] friend bool operator<=(const exact_integer& p, const exact_integer& q) noexcept {
+        return (p - q).sign() <= 0;
+    }
+
+    /// The magnitude as mantissa · 2^exponent, the mantissa in [1/2, 1), with a relative error of at most 1.001 ·
+    /// 2^-53: at least 65 of the leading 128 bits are significant, so that rounding these is in effect the only
+    /// rounding. Both are 0 for 0.
+    [[nodiscard]] std::pair<double, int> rounded_magnitude() const noexcept {
+        if (size_ == 0) return {0, 0};
+        const unsigned_wide leading =
+            unsigned_wide{limb_[size_ - 1]} << 64U | (size_ > 1 ? limb_[size_ - 2] : std::uint64_t{0});
+        int exponent = 0;
+        const double mantissa = std::frexp(static_cast<double>(leading), &exponent);
+        return {mantissa, exponent + 64 * (static_cast<int>(size_) - 2)};
+    }
+
+private:
+    /// Sets the size to that without leading zeros.
+    void set_size(std::size_t most) noexcept {
+        while (most > 0 && limb_[most - 1] == 0) --most;
+        size_ = most;
+    }
+
+    /// p ± |q|.
+    [[nodiscard]] static exact_integer sum(const exact_integer& p, const exact_integer& q,
+                                           bool second_is_negative) noexcept {
+        if (p.is_negative_ == second_is_negative) return sum_of_magnitudes(p, q, second_is_negative);
+        return is_less(p, q) ? difference_of_magnitudes(q, p, second_is_negative)
+                             : difference_of_magnitudes(p, q, p.is_negative_);
+    }
+    [[nodiscard]] static bool is_less(const exact_integer& p, const exact_integer& q) noexcept {
+        if (p.size_ != q.size_) return p.size_ < q.size_;
+        for (std::size_t i = p.size_; i-- > 0;)
+            if (p.limb_[i] != q.limb_[i]) return p.limb_[i] < q.limb_[i];
+        return false;
+    }
+    [[nodiscard]] static exact_integer sum_of_magnitudes(const exact_integer& p, const exact_integer& q,
+                                                         bool is_negative) noexcept {
+        exact_integer result;
+        const std::size_t size = std::max(p.size_, q.size_);
+        unsigned_wide carry = 0;
+        for (std::size_t i = 0; i < size; ++i) {
+            carry += unsigned_wide{p.limb_[i]} + q.limb_[i];
+            result.limb_[i] = static_cast<std::uint64_t>(carry);
+            carry >>= 64U;
+        }
+        if (carry != 0) result.limb_[size] = static_cast<std::uint64_t>(carry);
+        result.is_negative_ = is_negative;
+        result.set_size(size + static_cast<std::size_t>(carry != 0));
+        return result;
+    }
+    /// @param q not greater than p in magnitude
+    [[nodiscard]] static exact_integer difference_of_magnitudes(const exact_integer& p, const exact_integer& q,
+                                                                bool is_negative) noexcept {
+        exact_integer result;
+        std::uint64_t borrow = 0;
+        for (std::size_t i = 0; i < p.size_; ++i) {
+            const unsigned_wide difference = unsigned_wide{p.limb_[i]} - q.limb_[i] - borrow;
+            result.limb_[i] = static_cast<std::uint64_t>(difference);
+            borrow = static_cast<std::uint64_t>(difference >> 64U) & 1U;
+        }
+        result.is_negative_ = is_negative;
+        result.set_size(p.size_);
+        return result;
+    }
+
+    std::array<std::uint64_t, Capacity> limb_{};  // the lowest first, zeros from `size_` on
+    std::size_t size_ = 0;
+    bool is_negative_ = false;
+};
+
+}  // namespace aabb
