@@ -2,6 +2,7 @@
 
 #include "command_parser.hpp"
 #include "composing.hpp"
+#include "distances.hpp"
 
 import aabb.geometry;
 import aabblab.configs;
@@ -27,8 +28,10 @@ struct collide_request {
     method_options method{{aabb::stage::local_detection}};
     std::optional<std::string> out, poses_of_b;
     std::size_t repeats = 1;
+    std::optional<double> within;
     std::string self;  ///< a key of `self_choices`; empty without --self
     bool touching = true, first = false, count = false, geometry = false, exit_code = false, json = false;
+    bool distance = false;
 
     [[nodiscard]] std::vector<std::string> meshes() const { return b ? std::vector{a, *b} : std::vector{a}; }
     /// The query: all pairs, the first or their number, of A and B or of A with itself, at one pose or many.
@@ -82,12 +85,16 @@ void print_json(const collide_request& request, const mesh_result& result) {
     summary["exact"] = result.method.exact;
     summary["exact_for"] = nullptr;
     if (result.method.exact) summary["exact_for"] = request.self.empty() ? exact_for_meshes : "vertices in double";
+    if (request.within) summary["within"] = *request.within;
     for (const aabb::part_bytes& part : result.bytes) summary["bytes"][part.part] = part.bytes;
     print(summary.dump() + "\n");
 }
 
-/// Describes a pair: "triangles 3 and 5 intersect: segment 2 …".
-std::string text_of(const intersecting_pair& pair) {
+/// Describes a pair: "triangles 3 and 5 intersect: segment 2 …", "triangles 3 and 5 are within 0.5".
+std::string text_of(const collide_request& request, const intersecting_pair& pair) {
+    if (request.within)
+        return fmt::format("triangles {} and {} are{}\n", pair.triangles.a, pair.triangles.b,
+                           text_of_within(request.within));
     return fmt::format("triangles {} and {} intersect{}\n", pair.triangles.a, pair.triangles.b,
                        pair.common ? ": " + to_text(*pair.common) : "");
 }
@@ -95,13 +102,15 @@ std::string text_of(const intersecting_pair& pair) {
 /// Prints the number of pairs and the digest in one line, then the numbers by kind of intersection. Plain --first
 /// prints only the pair; with --poses too, a line per pose at which the meshes intersect precedes the others.
 void print_results(const collide_request& request, const mesh_result& result) {
-    if (request.first && !request.poses_of_b && result.first[0]) return print(text_of(*result.first[0]));
+    if (request.first && !request.poses_of_b && result.first[0]) return print(text_of(request, *result.first[0]));
     if (request.poses_of_b)
         for (std::size_t pose = 0; pose < result.first.size(); ++pose)
-            if (result.first[pose]) print(fmt::format("pose {}: {}", pose, text_of(*result.first[pose])));
+            if (result.first[pose]) print(fmt::format("pose {}: {}", pose, text_of(request, *result.first[pose])));
     print(fmt::format(
-        "{}{} of triangles{}{}\n", request.poses_of_b ? counted(result.counts.size(), "pose") + " of it: " : "",
-        counted(std::accumulate(result.counts.begin(), result.counts.end(), std::uint64_t{0}), "intersecting pair"),
+        "{}{} of triangles{}{}{}\n", request.poses_of_b ? counted(result.counts.size(), "pose") + " of it: " : "",
+        counted(std::accumulate(result.counts.begin(), result.counts.end(), std::uint64_t{0}),
+                request.within ? "pair" : "intersecting pair"),
+        text_of_within(request.within),
         request.self.empty() || request.query().self == self_pairs::intersecting ? "" : " that share no vertex",
         result.digest ? ", digest " + *result.digest : ""));
     kind_counts kinds{};
@@ -148,6 +157,12 @@ void reject_contradictions(const collide_request& request) {
         reject_if(!request.touching && request.self == "all",
                   "--self=all is about triangles that touch; give --touching=no with plain --self");
     }
+    reject_if(request.within && (!request.self.empty() || request.geometry || !request.touching),
+              "--within finds triangles of two meshes that need not intersect; omit --self, --geometry and --touching");
+    reject_if(request.distance &&
+                  (!request.self.empty() || request.within || request.first || request.count || request.geometry ||
+                   request.out || request.exit_code || !request.touching || request.repeats > 1),
+              "--distance measures two meshes; beside it, give only poses, --build, --tree and --json");
     reject_if(request.poses[1] && request.poses_of_b, "--pose-b and --poses both set the pose of B; give one of them");
     reject_if(request.first && request.count, "--first and --count exclude each other");
     reject_if(request.count && request.out, "--count stores no pairs, so --out has nothing to write");
@@ -174,10 +189,17 @@ std::optional<number_table> open_rows(const collide_request& request) {
 /// @returns the exit status: 1 with --exit-code if any triangles intersect
 int collide(const collide_request& request) {
     reject_contradictions(request);
-    const search_choice choice = request.method.choice();
+    search_choice choice = request.method.choice();
+    if (request.within || request.distance) require_no_triangle_test(choice);
+    if (request.within) choice.within = nearness{*request.within};
     const aabb::pose pose_a = pose_of(request.poses[0], "--pose-a");
     given_poses poses_b{{pose_of(request.poses[1], "--pose-b")}, /*file=*/{}, /*lines=*/{}};
     if (request.poses_of_b) poses_b = read_poses(*request.poses_of_b);
+    if (request.distance) {
+        print_distances(request.meshes(), measure_distances(choice, read_meshes(request.meshes()), pose_a, poses_b),
+                        request.poses_of_b.has_value(), request.json);
+        return 0;
+    }
     std::optional<number_table> rows = open_rows(request);
     const mesh_result result = search_meshes(request.query(), choice, read_meshes(request.meshes()), pose_a,
                                              std::move(poses_b), rows ? &*rows : nullptr);
@@ -213,6 +235,9 @@ void add_collide(const command_parser& program) {
         "coordinates) and edge; all: every pair with a common point, adjacent triangles included; no-adjacent: only "
         "pairs without a shared corner");
     add_touching(command, &request.touching, "pairs");
+    add_within(command, &request.within, "triangles");
+    command.flag("--distance", &request.distance,
+                 "Measure the distance of A and B instead, with a bound on its error, and where it is attained");
     command.flag("--first", &request.first, "Stop at the first pair found");
     command.flag("--count", &request.count, "Count the pairs without storing them");
     const auto take_repeats = [&request](const std::string& text) {

@@ -3,6 +3,7 @@
 #include "composing.hpp"
 
 import aabb.selection;
+import aabblab.inputs;
 
 namespace aabblab {
 
@@ -65,6 +66,31 @@ search_choice method_options::choice() const {
 
 std::string listed_names(aabb::strategy_kind kind) {
     return fmt::format("{}", fmt::join(aabb::strategy_names(kind), ", "));
+}
+
+void add_within(const command_parser& command, std::optional<double>* distance, const std::string& pairs) {
+    const auto take = [distance](const std::string& text) {
+        const std::string expected =
+            fmt::format("--within is a distance: a finite number that is not negative, not '{}'", text);
+        try {
+            *distance = parse_number_of<double>({text}, 0);
+        } catch (const aabb::input_error&) {
+            throw aabb::input_error(expected);
+        }
+        if (*distance < 0) throw aabb::input_error(expected);
+    };
+    command.option("--within D", take,
+                   fmt::format("Find the pairs of {0} whose distance is at most D, exactly", pairs));
+}
+
+void require_no_triangle_test(const search_choice& choice) {
+    if (choice.engine) throw aabb::input_error("no engine compares distances; omit --engine");
+    if (choice.named[aabb::strategy_kind::triangle])
+        throw aabb::input_error("distances need no triangle test; omit --triangle");
+}
+
+std::string text_of_within(const std::optional<double>& distance) {
+    return distance ? fmt::format(" within {}", *distance) : "";
 }
 
 void add_touching(const command_parser& command, bool* touching, const std::string& hits) {

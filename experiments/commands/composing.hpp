@@ -33,6 +33,16 @@ inline constexpr const char* exact_for_meshes = "vertices and poses in double";
 /// @param hits "pairs" or "contacts", for the help
 void add_touching(const command_parser& command, bool* touching, const std::string& hits);
 
+/// The option --within, a distance.
+/// @param pairs "triangles" or "boxes", for the help
+void add_within(const command_parser& command, std::optional<double>* distance, const std::string& pairs);
+
+/// Rejects the choice of what decides whether triangles intersect, which their distances replace.
+void require_no_triangle_test(const search_choice& choice);
+
+/// " within 0.5", or nothing without --within.
+[[nodiscard]] std::string text_of_within(const std::optional<double>& distance);
+
 /// The names of a kind's strategies, "median, mean, …", for help texts.
 [[nodiscard]] std::string listed_names(aabb::strategy_kind kind);
 

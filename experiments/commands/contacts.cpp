@@ -18,11 +18,12 @@ struct contacts_request {
     std::vector<std::string> meshes;
     method_options method{{aabb::stage::global_search, aabb::stage::local_detection}};
     std::optional<std::string> out;
+    std::optional<double> within;
     bool touching = true, geometry = false, json = false;
 };
 
 /// The result of --json: totals over all frames, and the time of each frame.
-std::string json_of(const search_method& method, const frames_result& result) {
+std::string json_of(const contacts_request& request, const search_method& method, const frames_result& result) {
     nlohmann::ordered_json summary = {{"objects", result.objects},
                                       {"frames", result.ms.size()},
                                       {"candidates", result.pairs},
@@ -36,6 +37,7 @@ std::string json_of(const search_method& method, const frames_result& result) {
                                       {"exact", method.exact}};
     summary["exact_for"] = nullptr;
     if (method.exact) summary["exact_for"] = exact_for_meshes;
+    if (request.within) summary["within"] = *request.within;
     return summary.dump() + "\n";
 }
 
@@ -43,9 +45,10 @@ std::string json_of(const search_method& method, const frames_result& result) {
 std::string text_of(const contacts_request& request, const search_method& method, const frames_result& result) {
     return fmt::format("{}: {}, {}\n", visible(request.motion), counted(result.objects, "object"),
                        counted(result.ms.size(), "frame")) +
-           fmt::format("{} of triangles in {} of objects ({} of boxes), digest {}\n",
-                       counted(result.contacts, "contact"), counted(result.object_pairs, "contact"),
-                       counted(result.pairs, "pair"), result.digest) +
+           fmt::format("{} of triangles{} in {} of objects ({} of boxes), digest {}\n",
+                       counted(result.contacts, request.within ? "pair" : "contact"), text_of_within(request.within),
+                       counted(result.object_pairs, request.within ? "pair" : "contact"), counted(result.pairs, "pair"),
+                       result.digest) +
            to_text(result.kinds) +
            fmt::format("{}: built in {:.3f} ms,\n{:.3f} ms per frame (mean, with frame 0)\n", method.text(),
                        result.build_ms, result.mean_ms());
@@ -55,7 +58,13 @@ std::string text_of(const contacts_request& request, const search_method& method
 void find_contacts(const contacts_request& request) {
     if (request.geometry && !request.out)
         throw aabb::input_error("--geometry adds columns to the contacts, so give --out FILE");
-    const search_choice choice = request.method.choice();
+    search_choice choice = request.method.choice();
+    if (request.within) {
+        if (request.geometry || !request.touching)
+            throw aabb::input_error("--within finds triangles that need not intersect; omit --geometry and --touching");
+        require_no_triangle_test(choice);
+        choice.within = nearness{*request.within};
+    }
     std::optional<number_table> rows;
     if (request.out) {
         require_other_file(*request.out, request.motion);
@@ -68,7 +77,7 @@ void find_contacts(const contacts_request& request) {
     search_method method = method_of(choice, traits_of(scene));
     const frames_result result = search_frames(scene, method, rows ? &*rows : nullptr,
                                                {.touching = request.touching, .geometry = request.geometry});
-    print(request.json ? json_of(method, result) : text_of(request, method, result));
+    print(request.json ? json_of(request, method, result) : text_of(request, method, result));
 }
 
 }  // namespace
@@ -85,6 +94,7 @@ void add_contacts(const command_parser& program) {
         "Mesh files (OFF, OBJ, PLY, STL, glTF) or shapes; object i has mesh i modulo the number of meshes");
     request.method.add_to(command, "build, tree and triangle test; the broad phase keeps its strategies");
     add_touching(command, &request.touching, "contacts");
+    add_within(command, &request.within, "triangles");
     command.option("--out FILE", &request.out,
                    "CSV file for the contacts: rows frame,object_a,object_b,triangle_a,triangle_b");
     command.flag("--geometry", &request.geometry,

@@ -3,6 +3,8 @@
 #include "command_parser.hpp"
 #include "composing.hpp"
 
+import aabb.distance;
+import aabb.pipeline;
 import aabblab.files;
 import aabblab.inputs;
 import aabblab.numbers;
@@ -17,24 +19,28 @@ struct pairs_request {
     std::string recording;
     method_options method{{aabb::stage::global_search}};
     std::optional<std::string> out;
+    std::optional<double> within;
+    std::optional<aabb::box_metric> metric;
     bool swept = false, json = false;
 };
 
 /// The result of --json: totals over all frames, and the time of each frame.
-std::string json_of(const search_method& method, const frames_result& result) {
+std::string json_of(const pairs_request& request, const search_method& method, const frames_result& result) {
     nlohmann::ordered_json summary = {
         {"objects", result.objects}, {"frames", result.ms.size()}, {"pairs", result.pairs}, {"digest", result.digest},
         {"ms", result.ms},           {"method", method.name},      {"exact", method.exact}};
     summary["exact_for"] = nullptr;
     if (method.exact) summary["exact_for"] = "the recorded boxes";
+    if (request.within) summary["within"] = *request.within;
     return summary.dump() + "\n";
 }
 
 /// The result for reading: totals over all frames, and the mean time per frame.
 std::string text_of(const pairs_request& request, const search_method& method, const frames_result& result) {
-    std::string text =
-        fmt::format("{}: {}, {}\n{}, digest {}\n", visible(request.recording), counted(result.objects, "object"),
-                    counted(result.ms.size(), "frame"), counted(result.pairs, "overlapping pair"), result.digest);
+    std::string text = fmt::format("{}: {}, {}\n{}{}, digest {}\n", visible(request.recording),
+                                   counted(result.objects, "object"), counted(result.ms.size(), "frame"),
+                                   counted(result.pairs, request.within ? "pair" : "overlapping pair"),
+                                   text_of_within(request.within), result.digest);
     // The mean, not the median: a Verlet list is rebuilt in few frames and reused in all others.
     if (!result.ms.empty())
         text += fmt::format("{}: {:.4g} ms per frame (mean, with frame 0)\n", method.text(), result.mean_ms());
@@ -43,9 +49,15 @@ std::string text_of(const pairs_request& request, const search_method& method, c
 
 /// Finds the overlapping boxes of a recording in each frame, writes them to the file of --out, and prints totals.
 void find_pairs(const pairs_request& request) {
-    const search_choice choice = request.method.choice();
+    if (request.metric && !request.within) throw aabb::input_error("--metric is the distance of --within D; give both");
+    search_choice choice = request.method.choice();
     std::unique_ptr<aabb::box_scene> boxes = open_boxes(request.recording);
-    scene_frames scene(request.swept ? swept(std::move(boxes)) : std::move(boxes));
+    if (request.swept) boxes = swept(std::move(boxes));
+    if (request.within) {
+        choice.within = nearness{*request.within, request.metric.value_or(aabb::box_metric::euclidean), boxes.get()};
+        boxes = in_floats(std::move(boxes));
+    }
+    scene_frames scene(std::move(boxes));
     search_method method = method_of(choice, traits_of(scene));
     std::optional<number_table> rows;
     if (request.out) {
@@ -53,7 +65,7 @@ void find_pairs(const pairs_request& request) {
         rows.emplace(*request.out, "frame,a,b");
     }
     const frames_result result = search_frames(scene, method, rows ? &*rows : nullptr);
-    print(request.json ? json_of(method, result) : text_of(request, method, result));
+    print(request.json ? json_of(request, method, result) : text_of(request, method, result));
 }
 
 }  // namespace
@@ -64,6 +76,14 @@ void add_pairs(const command_parser& program) {
     auto& request = command.set_action(find_pairs);
     command.argument("SCENE", &request.recording, "Boxes: a recording (.aabbs), or a .csv or .npy file");
     request.method.add_to(command, "these strategies");
+    add_within(command, &request.within, "boxes");
+    const auto take_metric = [&request](const std::string& text) {
+        if (text != "euclidean" && text != "axis")
+            throw aabb::input_error(fmt::format("--metric is euclidean or axis, not '{}'", text));
+        request.metric = text == "axis" ? aabb::box_metric::axis : aabb::box_metric::euclidean;
+    };
+    command.option("--metric M", take_metric,
+                   "The distance of --within: euclidean, or axis, the greatest gap on an axis (default euclidean)");
     command.option("--out FILE", &request.out, "File for the pairs, rows frame,a,b: CSV, or .npy or .json");
     command.flag(
         "--swept", &request.swept,

@@ -1,5 +1,6 @@
 module aabblab.queries;
 
+import aabb.distance_stages;
 import aabb.triangle.intersection;
 import aabb.validation;
 import aabblab.fmt;
@@ -29,7 +30,34 @@ hit_geometry geometry_of(const scene_frames& scene, const aabb::contact& c) {
     return {mesh_of(c.a), scene.poses()[c.a], mesh_of(c.b), scene.poses()[c.b]};
 }
 
+/// Lets the broad phase find the boxes that are near each other; without a narrow phase, exactly those.
+void search_within(stages& searching, const nearness& within) {
+    if (searching.local)
+        searching.global = std::make_unique<aabb::grown_stage>(std::move(searching.global), within.d);
+    else
+        searching.global = std::make_unique<aabb::within_stage>(std::move(searching.global), within.d, within.metric,
+                                                                within.in_double);
+}
+
+class scene_in_floats final : public aabb::box_scene {
+public:
+    explicit scene_in_floats(std::unique_ptr<aabb::box_scene> scene) : scene_(std::move(scene)) {}
+
+    [[nodiscard]] std::size_t objects() const override { return scene_->objects(); }
+    [[nodiscard]] std::size_t frames() const override { return scene_->frames(); }
+    bool next(std::vector<aabb::box>& boxes) override { return scene_->next(boxes); }
+    [[nodiscard]] std::span<const std::uint8_t> present() const override { return scene_->present(); }
+    void take_pairs(std::span<const aabb::index_pair> pairs) override { scene_->take_pairs(pairs); }
+
+private:
+    std::unique_ptr<aabb::box_scene> scene_;
+};
+
 }  // namespace
+
+std::unique_ptr<aabb::box_scene> in_floats(std::unique_ptr<aabb::box_scene> scene) {
+    return std::make_unique<scene_in_floats>(std::move(scene));
+}
 
 aabb::intersection_kind hit_geometry::kind(aabb::index_pair triangles) const {
     return intersection_kind_of(poses_, a_.given_triangle(triangles.a), b_.given_triangle(triangles.b));
@@ -71,6 +99,13 @@ search_method method_of(const search_choice& choice, const aabb::scene_traits& t
     const aabb::composition c = select_composition(choice.named, traits);
     search_method method;
     for (const aabb::stage stage : choice.stages) {
+        if (stage == aabb::stage::local_detection && choice.within) {
+            aabb::composition named = c;
+            named[aabb::strategy_kind::triangle] = {"distance", {}};
+            method.name += (method.name.empty() ? "" : ", ") + to_text(named, stage);
+            method.run_stages.local = aabb::compose_within(c, choice.within->d);
+            continue;
+        }
         const bool by_engine = choice.engine && stage == choice.stages.back();
         method.name += (method.name.empty() ? "" : ", ") + (by_engine ? *choice.engine : to_text(c, stage));
         method.exact &= by_engine ? aabb::is_exact_engine(*choice.engine) : is_exact(c, stage);
@@ -81,6 +116,7 @@ search_method method_of(const search_choice& choice, const aabb::scene_traits& t
             method.run_stages.local =
                 by_engine ? aabb::make_mesh_engine(*choice.engine) : aabb::compose_local_detection(c, uncounted);
     }
+    if (choice.within && method.run_stages.global) search_within(method.run_stages, *choice.within);
     return method;
 }
 

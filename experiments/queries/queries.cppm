@@ -1,6 +1,8 @@
 /// Queries of one or both stages, in the frames of a scene or of two meshes at given poses, with digest, times, rows.
 export module aabblab.queries;
 
+import aabb.distance;
+import aabb.distance_stage;
 import aabb.pipeline;
 import aabb.registry;
 import aabb.selection;
@@ -55,10 +57,22 @@ private:
     kind_counts counts_{};
 };
 
+/// Asks for pairs at a distance of at most `d`, instead of overlapping boxes or intersecting triangles.
+struct nearness {
+    double d;
+    aabb::box_metric metric = aabb::box_metric::euclidean;  ///< of boxes
+    const aabb::box_scene* in_double = nullptr;             ///< a scene whose boxes in double decide, if it has some
+};
+
+/// The scene without its boxes in double, so that what searches it sees floats only; `nearness` may refer to the given
+/// scene, which lives as long.
+[[nodiscard]] std::unique_ptr<aabb::box_scene> in_floats(std::unique_ptr<aabb::box_scene> scene);
+
 struct search_choice {
     std::vector<aabb::stage> stages;  ///< one or both of the two
     aabb::named_strategies named;
     std::optional<std::string> engine;  ///< replaces the last of these stages
+    std::optional<nearness> within = {};
 };
 
 struct search_method {
@@ -145,5 +159,17 @@ struct mesh_result {
 [[nodiscard]] mesh_result search_meshes(const mesh_query& query, const search_choice& choice,
                                         std::vector<aabb::mesh> meshes, const aabb::pose& pose_a, given_poses poses_b,
                                         number_table* rows);
+
+/// The distances of two meshes, by pose of the second.
+struct distances_result {
+    std::string method;
+    std::vector<std::uint32_t> triangles;  ///< their number, by mesh
+    std::vector<aabb::mesh_distance> distances;
+    double build_ms = 0;
+    std::vector<double> query_ms;
+};
+/// @throws aabb::input_error as `aabb::distance_stage`
+[[nodiscard]] distances_result measure_distances(const search_choice& choice, const std::vector<aabb::mesh>& meshes,
+                                                 const aabb::pose& pose_a, const given_poses& poses_b);
 
 }  // namespace aabblab
