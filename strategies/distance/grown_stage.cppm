@@ -107,7 +107,8 @@ struct grow_boxes {
     }
 };
 
-/// The same as `within_stage` does: pairs are those of boxes at a distance of at most `d`.
+/// The same as `within_stage` does: pairs are those of boxes at a distance of at most `d`. Of boxes of floats, since
+/// `detector_in_double` drops pairs that do not overlap.
 struct near_boxes {
     static constexpr std::string_view name = "near_boxes";
     static constexpr std::string_view summary = "pairs of boxes that are near each other";
