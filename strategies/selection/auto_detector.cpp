@@ -47,8 +47,8 @@ struct auto_detector::mesh_part {
     pipeline stages;
 };
 
-auto_detector::auto_detector(const std::vector<std::string>& named, std::size_t frames)
-    : auto_detector(parse_choices_for_boxes(named), scene_traits{.frames = frames}) {
+auto_detector::auto_detector(const std::vector<std::string>& named, std::size_t frames, const collision_filter* filter)
+    : auto_detector(parse_choices_for_boxes(named), scene_traits{.frames = frames}, filter) {
     if (const std::string sentence = needs_meshes(composed_of(selected_)); !sentence.empty())
         throw input_error(sentence);
     std::erase_if(selected_,
@@ -56,15 +56,16 @@ auto_detector::auto_detector(const std::vector<std::string>& named, std::size_t 
 }
 
 auto_detector::auto_detector(std::vector<mesh> meshes, std::vector<std::uint32_t> mesh_of,
-                             const std::vector<std::string>& named, std::size_t frames)
-    : auto_detector(parse_choices(named), traits_of(meshes, mesh_of.size(), frames)) {
+                             const std::vector<std::string>& named, std::size_t frames, const collision_filter* filter)
+    : auto_detector(parse_choices(named), traits_of(meshes, mesh_of.size(), frames), filter) {
     meshes_ = std::make_unique<mesh_part>(std::move(meshes), std::move(mesh_of), *global_,
                                           compose_local_detection(composed_of(selected_), instrumentation::none));
 }
 
-auto_detector::auto_detector(const named_strategies& named, const scene_traits& scene)
+auto_detector::auto_detector(const named_strategies& named, const scene_traits& scene, const collision_filter* filter)
     : selected_(select_strategies(named, scene)),
       global_(compose_global_search(composed_of(selected_), instrumentation::none)) {
+    if (filter) global_ = filtered(std::move(global_), *filter);
     global_->expect(scene.frames);
 }
 

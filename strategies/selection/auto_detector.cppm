@@ -1,6 +1,7 @@
 /// A `detector` whose strategies are chosen at run time, by name or by `auto`.
 export module aabb.auto_detector;
 
+import aabb.collision_filter;
 import aabb.pipeline;
 import aabb.registry;
 import aabb.selection;
@@ -20,14 +21,17 @@ public:
     /// A detector of boxes.
     /// @param named at most one entry per kind
     /// @param frames expected number of frames
+    /// @param filter leaves out pairs; may change between frames, must outlive the detector; null if all are wanted
     /// @throws input_error on an unknown kind, name or parameter, a kind that is named twice, a rejected combination,
     /// and a kind or strategy that needs meshes
-    explicit auto_detector(const std::vector<std::string>& named = {}, std::size_t frames = many_frames);
+    explicit auto_detector(const std::vector<std::string>& named = {}, std::size_t frames = many_frames,
+                           const collision_filter* filter = nullptr);
     /// A detector of meshes: builds the trees; all objects are present.
     /// @param mesh_of index in `meshes` of each object's mesh
     /// @throws input_error as the other constructor, on an invalid mesh index, and as `require_valid`
     auto_detector(std::vector<mesh> meshes, std::vector<std::uint32_t> mesh_of,
-                  const std::vector<std::string>& named = {}, std::size_t frames = many_frames);
+                  const std::vector<std::string>& named = {}, std::size_t frames = many_frames,
+                  const collision_filter* filter = nullptr);
     ~auto_detector();
 
     /// Inserts or removes an object; throws input_error as the `detector` of boxes or of meshes.
@@ -53,7 +57,7 @@ public:
 private:
     struct mesh_part;
 
-    auto_detector(const named_strategies& named, const scene_traits& scene);
+    auto_detector(const named_strategies& named, const scene_traits& scene, const collision_filter* filter);
     [[nodiscard]] pipeline& find_candidates(std::span<const pose> poses);
 
     std::vector<selected_strategy> selected_;

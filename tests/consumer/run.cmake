@@ -40,6 +40,7 @@ function(builds name flags)
         message(FATAL_ERROR "selected prints\n${output}")
     endif()
     prints(${WORK}/${name}/by_name "3 triangle pairs\n")
+    prints(${WORK}/${name}/filtered "all 0-1 0-2 1-2\nfiltered 0-2\nwoken 0-1 0-2\nby name 0-1 0-2\nwithout 0 1: 0-2\n")
     prints(${WORK}/${name}/meshes_by_type "${answers}")
 endfunction()
 

@@ -130,6 +130,7 @@ using columns = aabb::global_search<aabb::bucket_sort, aabb::columns_partition, 
 using counted_columns =
     aabb::global_search<aabb::bucket_sort, aabb::columns_partition, aabb::simd_sweep, aabb::work_counters>;
 using prepared_columns = aabb::prepared_search<copying_prepare, columns>;
+using filtered = aabb::filtered_search<bare>;
 
 /// It cuts, whether that pays or not.
 aabb::axial_cut_partition into_segments() {
@@ -137,6 +138,13 @@ aabb::axial_cut_partition into_segments() {
     config.axes = 1;
     config.segments = 16;
     return aabb::axial_cut_partition(config);
+}
+
+/// A filter that leaves nothing out.
+const aabb::collision_filter& wide_filter(unsigned objects) {
+    static aabb::collision_filter filter;
+    for (unsigned id = 0; id < objects; ++id) filter.set(id, {.group = 1U << id % 32});
+    return filter;
 }
 
 /// A row of boxes of which each overlaps its neighbours in some frames; each frame moves all, and some past another.
@@ -181,6 +189,10 @@ int main(int argc, char** argv) {
     if (way == "counted") play(objects, [] { return aabb::detector<counted>(); });
     if (way == "cut") play(objects, [] { return aabb::detector<cut>(cut({}, into_segments(), {})); });
     if (way == "prepared") play(objects, [] { return aabb::detector<prepared>(); });
+    if (way == "filtered") {
+        const aabb::collision_filter& filter = wide_filter(objects);
+        play(objects, [&filter] { return aabb::detector<filtered>(filtered(filter)); });
+    }
     if (way == "columns_by_hand") play(objects, [] { return columns_by_hand(); });
     if (way == "columns") play(objects, [] { return aabb::detector<columns>(); });
     if (way == "counted_columns") play(objects, [] { return aabb::detector<counted_columns>(); });

@@ -43,10 +43,12 @@ function(check_symbols)
     left_out(boxes_only both_stages local_detection mesh _tree triangle posed_boxes model contact basic_pipeline)
     # Of other ways to search, and of what is made by name.
     left_out(boxes_only both_stages column simd_sweep bucket_sort worker_threads)
-    left_out(boxes_only stage_costs axial_cut subset_lists work_counters global_stage prepared_search)
+    left_out(boxes_only stage_costs axial_cut subset_lists work_counters global_stage prepared_search collision_filter
+             filtered_search box_index)
     left_out(boxes_only selected uniform_grid all_axes incremental_sweep strategy_choice)
     # Of both stages, composed when they are compiled: neither division nor counters nor other strategies.
-    left_out(both_stages stage_costs work_counters global_stage prepared_search axial_cut one_axis)
+    left_out(both_stages stage_costs work_counters global_stage prepared_search axial_cut one_axis collision_filter
+             filtered_search box_index)
     left_out(both_stages selected divided_scene local_stage neighbour_list split_mesh canonical_tree depth_first_walk
              strategy_choice)
     # The engines, which nothing of the library has.
@@ -104,15 +106,16 @@ function(require_more_bytes hand)
 endfunction()
 
 function(check_bytes)
-    foreach(way by_hand uncounted composed counted cut prepared columns_by_hand columns counted_columns prepared_columns)
+    foreach(way by_hand uncounted composed counted cut prepared filtered columns_by_hand columns counted_columns
+                prepared_columns)
         held(${way})
     endforeach()
-    require_same_pairs(by_hand uncounted composed counted cut prepared columns_by_hand columns counted_columns
+    require_same_pairs(by_hand uncounted composed counted cut prepared filtered columns_by_hand columns counted_columns
                        prepared_columns)
     require_as_many_bytes(by_hand composed)
     require_as_many_bytes(by_hand uncounted)
     require_as_many_bytes(columns_by_hand columns)
-    require_more_bytes(by_hand counted_itself cut_itself counted_heap cut_heap prepared_heap)
+    require_more_bytes(by_hand counted_itself cut_itself counted_heap cut_heap prepared_heap filtered_heap)
     require_more_bytes(columns_by_hand counted_columns_itself prepared_columns_heap)
 endfunction()
 
@@ -180,7 +183,7 @@ function(check_instructions)
             endif()
         endforeach()
     endforeach()
-    foreach(pair "by_hand counted" "by_hand cut" "by_hand prepared" "columns_by_hand prepared_columns")
+    foreach(pair "by_hand counted" "by_hand cut" "by_hand prepared" "by_hand filtered" "columns_by_hand prepared_columns")
         separate_arguments(pair)
         more_than(${pair})
         if(NOT (instructions_grown GREATER 16000 AND branches_grown GREATER 16000))

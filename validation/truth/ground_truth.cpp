@@ -20,7 +20,8 @@ bool judge_intersection(const pose_pair& poses, const triangle3d& s, const trian
 }
 
 /// Chooses brute force for few boxes, since it has the least that can be wrong, and CGAL where that is too slow.
-ground_truth::ground_truth(std::size_t objects, const mesh_scene* meshes) : meshes_(meshes) {
+ground_truth::ground_truth(std::size_t objects, const mesh_scene* meshes, const collision_filter* filter)
+    : meshes_(meshes), filter_(filter) {
     constexpr std::size_t brute_force_limit = 20000;
     box_engine_ = objects <= brute_force_limit ? "brute_force" : "cgal";
     boxes_ = make_box_engine(box_engine_);
@@ -57,12 +58,14 @@ void ground_truth::compute(const scene_frame& frame) {
             for (std::size_t j = i + 1; j < by_low.size() && low(by_low[j]) <= boxes[by_low[i]].max[0]; ++j)
                 if (boxes[by_low[i]].overlaps(boxes[by_low[j]])) pairs_.push_back(ordered_pair(by_low[i], by_low[j]));
     }
+    if (filter_) filter_->apply(pairs_);
     std::ranges::sort(pairs_);
     if (!triangles_) return;
     update_deformed_meshes();
     const std::vector<std::uint32_t>& mesh_of = meshes_->mesh_of;
     std::vector<index_pair> triangle_pairs;
     for (const auto [a, b] : overlapping_spheres(frame.poses)) {
+        if (filter_ && !filter_->keeps(a, b)) continue;
         triangle_pairs.clear();
         triangles_->all_pairs(mesh_of[a], frame.poses[a], mesh_of[b], frame.poses[b], triangle_pairs);
         for (const auto [s, t] : triangle_pairs) contacts_.push_back({a, b, s, t});

@@ -1,6 +1,7 @@
 /// The ground truth of a scene, and the classification of differences from it. CGAL's headers stay internal.
 export module aabb.truth;
 
+import aabb.collision_filter;
 import aabb.pipeline;
 import aabb.std;
 
@@ -67,7 +68,8 @@ class ground_truth {
 public:
     /// @param objects the number of objects, including absent ones
     /// @param meshes  the scene, which must outlive this; null for a scene of boxes
-    ground_truth(std::size_t objects, const mesh_scene* meshes);
+    /// @param filter  leaves out pairs of objects; must outlive this; null if all count
+    ground_truth(std::size_t objects, const mesh_scene* meshes, const collision_filter* filter = nullptr);
 
     /// Names the methods: "brute_force for boxes, cgal on all pairs of objects for triangles".
     [[nodiscard]] std::string name() const;
@@ -89,6 +91,7 @@ private:
     [[nodiscard]] std::vector<index_pair> overlapping_spheres(std::span<const pose> poses) const;
 
     const mesh_scene* meshes_;
+    const collision_filter* filter_;
     std::string box_engine_;
     std::unique_ptr<global_stage> boxes_;
     std::unique_ptr<local_stage> triangles_;  // null in a scene of boxes

@@ -1,0 +1,110 @@
+export module aabb.collision_filter:filter;
+
+import aabb.geometry;
+import aabb.std;
+
+export namespace aabb {
+
+/// One of two sets whose objects are tested against those of the other set only.
+enum class object_set : std::uint8_t { none = 0, a = 1, b = 2 };
+
+/// What collision filtering knows of an object; an object of which nothing was said has these defaults, with which it
+/// is tested against every other such object. Groups and masks are those of Bullet (`m_collisionFilterGroup`,
+/// `m_collisionFilterMask`, manual 2.83, "Filtering Collisions") and of Box2D (`b2Filter::categoryBits`, `maskBits`,
+/// manual 2.4, "Filtering"), with Box2D's defaults. Other engines (ODE, MuJoCo) ask for one of the two conditions on
+/// masks only.
+struct object_filter {
+    std::uint32_t group = 1;            ///< the groups of the object, one per bit
+    std::uint32_t mask = 0xffff'ffff;   ///< the groups against which it is tested
+    object_set set = object_set::none;  ///< if any object has a set, only pairs of one of A and one of B are kept
+    bool rests = false;                 ///< two objects at rest are not tested against each other
+
+    friend bool operator==(const object_filter&, const object_filter&) = default;
+};
+
+/// Decides which pairs of objects are kept. It must be changed between frames only, and counts from the next search on.
+class collision_filter {
+public:
+    /// Replaces what is known of an object.
+    void set(std::uint32_t id, const object_filter& object) {
+        if (id >= objects_.size()) objects_.resize(std::size_t{id} + 1);
+        count(objects_[id], -1);
+        count(object, 1);
+        objects_[id] = object;
+    }
+    [[nodiscard]] object_filter operator[](std::uint32_t id) const noexcept {
+        return id < objects_.size() ? objects_[id] : object_filter{};
+    }
+
+    /// Leaves these pairs out, besides those of earlier calls; each in either order.
+    void leave_out(std::span<const index_pair> pairs) {
+        for (const auto [a, b] : pairs) exceptions_.push_back(ordered_pair(a, b));
+        std::ranges::sort(exceptions_);
+        exceptions_.erase(std::ranges::unique(exceptions_).begin(), exceptions_.end());
+    }
+    void leave_out(index_pair pair) { leave_out({&pair, 1}); }
+
+    /// The pairs that were left out by `leave_out`, a < b, sorted.
+    [[nodiscard]] std::span<const index_pair> exceptions() const noexcept { return exceptions_; }
+
+    /// Whether a pair of objects is tested, in either order.
+    [[nodiscard]] inline bool keeps(std::uint32_t a, std::uint32_t b) const noexcept {
+        return keeps_by_attributes(a, b) && !std::ranges::binary_search(exceptions_, ordered_pair(a, b));
+    }
+
+    /// Removes the pairs from index `first` on that are not kept, in place and in order.
+    /// @param object_of the object of an id in the pairs
+    template <class ObjectOf>
+    void apply(std::vector<index_pair>& pairs, std::size_t first, ObjectOf object_of) const {
+        const auto keep_if = [&](auto is_kept) {
+            std::size_t end = first;
+            for (std::size_t i = first; i < pairs.size(); ++i) {  // without a branch that depends on the pair
+                const index_pair pair = pairs[i];
+                pairs[end] = pair;
+                end += static_cast<std::size_t>(is_kept(object_of(pair.a), object_of(pair.b)));
+            }
+            pairs.resize(end);
+        };
+        if (exceptions_.empty())
+            keep_if([this](std::uint32_t a, std::uint32_t b) { return keeps_by_attributes(a, b); });
+        else
+            keep_if([this](std::uint32_t a, std::uint32_t b) { return keeps(a, b); });
+    }
+    void apply(std::vector<index_pair>& pairs, std::size_t first = 0) const {
+        apply(pairs, first, [](std::uint32_t id) { return id; });
+    }
+
+    /// The number of objects at rest.
+    [[nodiscard]] std::size_t resting() const noexcept { return static_cast<std::size_t>(resting_); }
+    [[nodiscard]] bool has_sets() const noexcept { return in_a_ + in_b_ > 0; }
+    [[nodiscard]] std::size_t size_of_smaller_set() const noexcept {
+        return static_cast<std::size_t>(std::min(in_a_, in_b_));
+    }
+    [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(objects_, exceptions_); }
+
+private:
+    void count(const object_filter& object, std::ptrdiff_t change) noexcept {
+        if (object.set == object_set::a) in_a_ += change;
+        if (object.set == object_set::b) in_b_ += change;
+        if (object.rests) resting_ += change;
+    }
+    /// Whether all but the exceptions keep a pair; without branches, since pairs come in no order.
+    [[nodiscard]] inline bool keeps_by_attributes(std::uint32_t a, std::uint32_t b) const noexcept {
+        const object_filter first = (*this)[a];
+        const object_filter second = (*this)[b];
+        const unsigned both_sets = static_cast<unsigned>(object_set::a) | static_cast<unsigned>(object_set::b);
+        const unsigned sets = static_cast<unsigned>(first.set) | static_cast<unsigned>(second.set);
+        unsigned kept = static_cast<unsigned>((first.group & second.mask) != 0);
+        kept &= static_cast<unsigned>((second.group & first.mask) != 0);
+        kept &= static_cast<unsigned>(!has_sets()) | static_cast<unsigned>(sets == both_sets);
+        kept &= ~(static_cast<unsigned>(first.rests) & static_cast<unsigned>(second.rests));
+        return kept != 0;
+    }
+
+    std::vector<object_filter> objects_;  // by id; those beyond the end have the defaults
+    std::vector<index_pair> exceptions_;  // a < b, sorted
+    std::ptrdiff_t in_a_ = 0, in_b_ = 0;  // numbers of objects by set
+    std::ptrdiff_t resting_ = 0;          // number of objects at rest
+};
+
+}  // namespace aabb
