@@ -2,6 +2,7 @@
 
 #include "command_parser.hpp"
 #include "composing.hpp"
+#include "filtering.hpp"
 
 import aabblab.files;
 import aabblab.inputs;
@@ -17,6 +18,7 @@ struct contacts_request {
     std::string motion;
     std::vector<std::string> meshes;
     method_options method{{aabb::stage::global_search, aabb::stage::local_detection}};
+    filter_files filter;
     std::optional<std::string> out;
     std::optional<double> within;
     bool touching = true, geometry = false, json = false;
@@ -43,8 +45,8 @@ std::string json_of(const contacts_request& request, const search_method& method
 
 /// The result for reading: totals over all frames, and the mean time per frame.
 std::string text_of(const contacts_request& request, const search_method& method, const frames_result& result) {
-    return fmt::format("{}: {}, {}\n", visible(request.motion), counted(result.objects, "object"),
-                       counted(result.ms.size(), "frame")) +
+    return fmt::format("{}{}: {}, {}\n", visible(request.motion), filter_text(request.filter),
+                       counted(result.objects, "object"), counted(result.ms.size(), "frame")) +
            fmt::format("{} of triangles{} in {} of objects ({} of boxes), digest {}\n",
                        counted(result.contacts, request.within ? "pair" : "contact"), text_of_within(request.within),
                        counted(result.object_pairs, request.within ? "pair" : "contact"), counted(result.pairs, "pair"),
@@ -68,12 +70,14 @@ void find_contacts(const contacts_request& request) {
     std::optional<number_table> rows;
     if (request.out) {
         require_other_file(*request.out, request.motion);
+        require_no_filter(*request.out, request.filter);
         require_no_mesh(*request.out, request.meshes);
         std::string columns = "frame,object_a,object_b,triangle_a,triangle_b";
         if (request.geometry) columns += "," + std::string(intersection_columns);
         rows.emplace(*request.out, columns);
     }
     scene_frames scene(open_motion(request.motion, read_meshes(request.meshes)), request.motion);
+    scene.filter_by(read_filter(request.filter, scene.objects()));
     search_method method = method_of(choice, traits_of(scene));
     const frames_result result = search_frames(scene, method, rows ? &*rows : nullptr,
                                                {.touching = request.touching, .geometry = request.geometry});
@@ -95,6 +99,7 @@ void add_contacts(const command_parser& program) {
     request.method.add_to(command, "build, tree and triangle test; the broad phase keeps its strategies");
     add_touching(command, &request.touching, "contacts");
     add_within(command, &request.within, "triangles");
+    add_filter_options(command, &request.filter);
     command.option("--out FILE", &request.out,
                    "CSV file for the contacts: rows frame,object_a,object_b,triangle_a,triangle_b");
     command.flag("--geometry", &request.geometry,

@@ -1,4 +1,5 @@
 #include "command_parser.hpp"
+#include "filtering.hpp"
 
 import aabblab.explain;
 import aabblab.inputs;
@@ -13,6 +14,7 @@ void add_explain(const command_parser& program) {
                      std::string("Config of an experiment (.toml), to explain its compositions; or a scene, to explain "
                                  "what auto selects: ") +
                          scene_arguments_help);
+    add_filter_options(command, &request.filter);
     command.option(
         "--seconds S", [&request](const std::string& text) { request.seconds = seconds_of(text, "run"); },
         "Seconds for each scene (default 60); what does not fit into them is listed as not finished");

@@ -2,6 +2,7 @@
 
 #include "command_parser.hpp"
 #include "composing.hpp"
+#include "filtering.hpp"
 
 import aabb.distance;
 import aabb.pipeline;
@@ -18,6 +19,7 @@ namespace {
 struct pairs_request {
     std::string recording;
     method_options method{{aabb::stage::global_search}};
+    filter_files filter;
     std::optional<std::string> out;
     std::optional<double> within;
     std::optional<aabb::box_metric> metric;
@@ -37,10 +39,11 @@ std::string json_of(const pairs_request& request, const search_method& method, c
 
 /// The result for reading: totals over all frames, and the mean time per frame.
 std::string text_of(const pairs_request& request, const search_method& method, const frames_result& result) {
-    std::string text = fmt::format("{}: {}, {}\n{}{}, digest {}\n", visible(request.recording),
-                                   counted(result.objects, "object"), counted(result.ms.size(), "frame"),
-                                   counted(result.pairs, request.within ? "pair" : "overlapping pair"),
-                                   text_of_within(request.within), result.digest);
+    std::string text =
+        fmt::format("{}{}: {}, {}\n{}{}, digest {}\n", visible(request.recording), filter_text(request.filter),
+                    counted(result.objects, "object"), counted(result.ms.size(), "frame"),
+                    counted(result.pairs, request.within ? "pair" : "overlapping pair"), text_of_within(request.within),
+                    result.digest);
     // The mean, not the median: a Verlet list is rebuilt in few frames and reused in all others.
     if (!result.ms.empty())
         text += fmt::format("{}: {:.4g} ms per frame (mean, with frame 0)\n", method.text(), result.mean_ms());
@@ -58,10 +61,12 @@ void find_pairs(const pairs_request& request) {
         boxes = in_floats(std::move(boxes));
     }
     scene_frames scene(std::move(boxes));
+    scene.filter_by(read_filter(request.filter, scene.objects()));
     search_method method = method_of(choice, traits_of(scene));
     std::optional<number_table> rows;
     if (request.out) {
         require_other_file(*request.out, request.recording);
+        require_no_filter(*request.out, request.filter);
         rows.emplace(*request.out, "frame,a,b");
     }
     const frames_result result = search_frames(scene, method, rows ? &*rows : nullptr);
@@ -76,6 +81,7 @@ void add_pairs(const command_parser& program) {
     auto& request = command.set_action(find_pairs);
     command.argument("SCENE", &request.recording, "Boxes: a recording (.aabbs), or a .csv or .npy file");
     request.method.add_to(command, "these strategies");
+    add_filter_options(command, &request.filter);
     add_within(command, &request.within, "boxes");
     const auto take_metric = [&request](const std::string& text) {
         if (text != "euclidean" && text != "axis")

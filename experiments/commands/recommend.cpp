@@ -1,4 +1,5 @@
 #include "command_parser.hpp"
+#include "filtering.hpp"
 
 import aabblab.inputs;
 import aabblab.race;
@@ -10,6 +11,7 @@ void add_recommend(const command_parser& program) {
         "recommend", "Find the fastest composition or engine for a scene, with early stopping of slow candidates");
     auto& request = command.set_action(recommend);
     command.argument("WHAT", &request.what, scene_arguments_help);
+    add_filter_options(command, &request.filter);
     command.option(
         "--seconds S", [&request](const std::string& text) { request.seconds = seconds_of(text, "run"); },
         "Seconds for the runs (default 60); the ground truth may take as long again");

@@ -1,7 +1,9 @@
 module aabblab.configs;
 
 import :document;
+import aabb.collision_filter;
 import aabb.digest;
+import aabblab.filters;
 
 namespace aabblab {
 
@@ -61,6 +63,7 @@ void require_known_keys(const document& doc, const node& scene, const scene_info
         if (const node* seed = table && info.reads_file ? table->find("seed") : nullptr)
             doc.fail(seed->line, info.name + " reads a file, so it has no seed");
     std::vector<std::string> known{"kind", "seed", "quick"};
+    known.insert(known.end(), filter_settings.begin(), filter_settings.end());
     if (info.has_meshes) known.insert(known.end(), {"meshes", "without_data"});
     for (const aabb::parameter_info& p : info.parameters) known.push_back(p.name);
     doc.require_keys(scene, " of scene " + info.name, known);
@@ -93,13 +96,14 @@ std::vector<std::string> meshes_of(const document& doc, const node& scene, std::
     return fallback;
 }
 
-/// The settings of a scene with their alternative values. If its kind reads a file, every listed file must exist.
+/// The settings of a scene with their alternative values. Every file that they name must exist.
 std::vector<alternatives> settings_of(const document& doc, const node& scene, bool reads_file) {
     std::vector<alternatives> settings;
     for (const node& entry : scene.items) {
         if (std::ranges::find(own_keys, entry.key) != std::end(own_keys)) continue;
         settings.emplace_back(entry.key, doc.alternatives_of(entry.key, entry));
-        if (reads_file && entry.key == "file")
+        const bool is_filter = std::ranges::find(filter_settings, entry.key) != filter_settings.end();
+        if (is_filter || (reads_file && entry.key == "file"))
             for (const located_text& name : settings.back().second)
                 doc.at_line(name.line, [&] { static_cast<void>(resolve_file(name.text, doc.folder())); });
     }
@@ -134,7 +138,19 @@ void add_frames(aabb::digest& digest, auto& scene, std::size_t objects) {
     }
 }
 
-/// Generates the scene once and digests the contents of its meshes and file: if they change, a run cannot be resumed.
+/// Digests a filter; a scene without one adds nothing.
+void add_filter(aabb::digest& digest, const scene_choice& choice, std::size_t objects) {
+    const auto filter = filter_of(choice, objects);
+    if (!filter) return;
+    for (std::uint32_t id = 0; id < objects; ++id) {
+        const aabb::object_filter object = (*filter)[id];
+        digest.add(std::array{object.group, object.mask, static_cast<std::uint32_t>(object.set),
+                              static_cast<std::uint32_t>(object.rests)});
+    }
+    for (const auto [a, b] : filter->exceptions()) digest.add(std::array{a, b});
+}
+
+/// Generates the scene once and digests the contents of its meshes and files: if they change, a run cannot be resumed.
 void add_content(aabb::digest& digest, const scene_choice& choice, const scene_info& info) {
     if (info.has_meshes) {
         const std::unique_ptr<aabb::mesh_scene> scene = make_mesh_scene(choice);
@@ -144,9 +160,11 @@ void add_content(aabb::digest& digest, const scene_choice& choice, const scene_i
             for (const std::array<std::uint32_t, 3>& triangle : m.triangles) digest.add(triangle);
         }
         if (info.reads_file) add_frames<aabb::pose>(digest, *scene, scene->mesh_of.size());
+        add_filter(digest, choice, scene->mesh_of.size());
     } else {
         const std::unique_ptr<aabb::box_scene> scene = make_box_scene(choice);
         if (info.reads_file) add_frames<aabb::box>(digest, *scene, scene->objects());
+        add_filter(digest, choice, scene->objects());
     }
 }
 

@@ -5,7 +5,9 @@ module aabblab.errors;
 
 import aabb.pipeline;
 import aabb.registry;
+import aabb.collision_filter;
 import aabb.truth;
+import aabblab.filters;
 import aabblab.fmt;
 import aabblab.numbers;
 import aabblab.progress;
@@ -183,12 +185,14 @@ void add_overlapping(const aabb::mesh& a, const aabb::pose& pose_a, const aabb::
 /// The pairs of triangles with overlapping boxes, of any two objects, over all frames, in the frame of the first mesh.
 std::vector<aabb::triangle_pair<float>> overlapping_triangles(const scene_choice& choice) {
     const std::unique_ptr<aabb::mesh_scene> scene = make_mesh_scene(choice);
+    const auto filter = filter_of(choice, scene->mesh_of.size());
     std::vector<aabb::triangle_pair<float>> overlapping;
     const auto mesh_of = [&](std::size_t object) -> const aabb::mesh& { return scene->meshes[scene->mesh_of[object]]; };
     for (std::vector<aabb::pose> poses; scene->next(poses);)
         for (std::size_t a = 0; a < poses.size(); ++a)
             for (std::size_t b = a + 1; b < poses.size(); ++b)
-                add_overlapping(mesh_of(a), poses[a], mesh_of(b), poses[b], overlapping);
+                if (!filter || filter->keeps(static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b)))
+                    add_overlapping(mesh_of(a), poses[a], mesh_of(b), poses[b], overlapping);
     return overlapping;
 }
 

@@ -160,10 +160,12 @@ bool explain_scene(const experiment& e, staged_scene& scene, const time_limits& 
 int explain(const explain_request& request) {
     experiment e;
     if (request.what.size() == 1 && is_config_name(request.what.front())) {
+        if (request.filter.any())
+            throw aabb::input_error("--groups and --except are for a scene; a config has the keys groups and except");
         e = open_experiment(request.what.front(), /*quick=*/false);
     } else {
         e.automatic.emplace_back();
-        e.scenes.push_back(scene_of_arguments(request.what));
+        add_filter(request.filter, e.scenes.emplace_back(scene_of_arguments(request.what)));
     }
     if (!e.automatic.empty()) require_fine_clock();
     bool agree = true;

@@ -4,6 +4,7 @@ export module aabblab.explain;
 import aabb.pipeline;
 import aabb.registry;
 import aabb.std;
+import aabblab.filters;
 import aabblab.results;
 import aabblab.tables;
 import aabblab.trials;
@@ -12,6 +13,7 @@ export namespace aabblab {
 
 struct explain_request {
     std::vector<std::string> what;  ///< a config, or the arguments that name a scene, for `auto`
+    filter_files filter;            ///< leaves out pairs of a scene; a config names its own
     double seconds = 60;            ///< budget of each scene
 };
 

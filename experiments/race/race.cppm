@@ -3,6 +3,7 @@
 export module aabblab.race;
 
 import aabb.std;
+import aabblab.filters;
 import aabblab.trials;
 import aabblab.scenes;
 import aabblab.statistics;
@@ -63,6 +64,7 @@ void rank(std::vector<racer>& finalists);
 
 struct recommend_request {
     std::vector<std::string> what;      ///< the arguments that name a scene
+    filter_files filter;                ///< leaves out pairs
     std::optional<std::string> report;  ///< the HTML page to write
     double seconds = 60;
 };

@@ -99,11 +99,15 @@ std::string measures_page(staged_scene& scene, double seconds) {
 int recommend(const recommend_request& request) {
     require_fine_clock();
     time_limits limits(request.seconds);
-    staged_scene scene(scene_of_arguments(request.what));
+    scene_choice choice = scene_of_arguments(request.what);
+    add_filter(request.filter, choice);
+    staged_scene scene(choice);
     limits.note_scene_read();
     std::optional<output_file> page;
     if (request.report) {
         require_no_mesh(*request.report, request.what);
+        for (const std::optional<std::string>& file : {request.filter.groups, request.filter.except})
+            if (file) require_other_file(*request.report, *file);
         page.emplace(*request.report);
     }
     if (scene.scene().objects() < 2)

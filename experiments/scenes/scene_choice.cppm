@@ -14,6 +14,10 @@ struct scene_info {
     std::vector<aabb::parameter_info> parameters;
 };
 
+/// The settings of every kind of scene that name the files of a collision filter: attributes of objects, and pairs that
+/// are left out. The filter acts on the search of the scene, not on its frames (`aabblab.filters`).
+inline constexpr std::array<std::string_view, 2> filter_settings{"groups", "except"};
+
 /// Identifies a scene: its kind, settings that differ from the defaults, and a seed unless it reads a file. Meshes are
 /// files or generated shapes: "icosphere", "torus_knot:triangles=20000", "noise_sphere".
 struct scene_choice {

@@ -14,6 +14,14 @@ const scene_kind& kind_named(const std::string& name) {
     return *kind;
 }
 
+/// The scene without its filter, which the kinds do not know.
+scene_choice without_filter(scene_choice choice) {
+    std::erase_if(choice.settings, [](const aabb::setting& s) {
+        return std::ranges::find(filter_settings, s.name) != filter_settings.end();
+    });
+    return choice;
+}
+
 void require_seed(const scene_info& info, const scene_choice& choice) {
     if (info.reads_file && choice.seed) throw aabb::input_error(info.name + " reads a file, so it has no seed");
     if (!info.reads_file && !choice.seed) throw aabb::input_error(info.name + " needs a seed");
@@ -81,14 +89,14 @@ std::unique_ptr<aabb::box_scene> make_box_scene(const scene_choice& choice) {
     if (kind.make_boxes == nullptr) throw aabb::input_error(choice.kind + " is a scene of meshes, not of boxes");
     if (!choice.meshes.empty()) throw aabb::input_error(choice.kind + " is a scene of boxes and takes no meshes");
     require_seed(kind.info, choice);
-    return kind.make_boxes(choice);
+    return kind.make_boxes(without_filter(choice));
 }
 
 std::unique_ptr<aabb::mesh_scene> make_mesh_scene(const scene_choice& choice) {
     const scene_kind& kind = kind_named(choice.kind);
     if (kind.make_meshes == nullptr) throw aabb::input_error(choice.kind + " is a scene of boxes, not of meshes");
     require_seed(kind.info, choice);
-    return kind.make_meshes(choice);
+    return kind.make_meshes(without_filter(choice));
 }
 
 }  // namespace aabblab

@@ -1,5 +1,6 @@
 module aabblab.trials;
 
+import aabblab.filters;
 import aabblab.pair_output;
 
 namespace aabblab {
@@ -7,12 +8,13 @@ namespace aabblab {
 /// Makes the scene; messages about poses name the file that they come from, if any.
 scene_frames::scene_frames(const scene_choice& choice) {
     const scene_info& info = scene_named(choice.kind);
-    if (!info.has_meshes) {
+    if (info.has_meshes)
+        meshes_ = make_mesh_scene(choice);
+    else
         box_scene_ = make_box_scene(choice);
-        return;
-    }
-    meshes_ = make_mesh_scene(choice);
-    if (info.reads_file) poses_file_ = std::ranges::find(choice.settings, "file", &aabb::setting::name)->value;
+    if (info.has_meshes && info.reads_file)
+        poses_file_ = std::ranges::find(choice.settings, "file", &aabb::setting::name)->value;
+    filter_by(filter_of(choice, objects()));
 }
 
 bool scene_frames::next() {
@@ -55,11 +57,15 @@ void scene_frames::note_changes(std::span<const std::uint8_t> present) {
 }
 
 stage_runner::stage_runner(const candidate& tested, const scene_frames& scene, aabb::instrumentation counted)
-    : stage_runner(stages{tested.make_global(counted), scene.meshes() ? tested.make_local(counted) : nullptr}, scene) {}
+    : stage_runner(stages{tested.make_global(counted), scene.meshes() ? tested.make_local(counted) : nullptr}, scene,
+                   tested.reported ? aabb::filtering::late : aabb::filtering::early, counted) {}
 
 /// Connects the stages for a scene. Boxes go to the broad phase directly. Meshes need a pipeline, which derives boxes
 /// from their poses; without a broad phase it takes every two objects to the narrow phase.
-stage_runner::stage_runner(stages given, const scene_frames& scene) : scene_(scene), stages_(std::move(given)) {
+stage_runner::stage_runner(stages given, const scene_frames& scene, aabb::filtering when, aabb::instrumentation counted)
+    : scene_(scene), stages_(std::move(given)) {
+    if (stages_.global && scene.filter())
+        stages_.global = filtered(std::move(stages_.global), *scene.filter(), when, counted);
     if (stages_.global) stages_.global->expect(scene.frames());  // few frames do not repay much preparation
     if (!scene.meshes()) return;
     if (stages_.global)

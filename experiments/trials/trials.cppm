@@ -2,6 +2,7 @@
 /// isolated child processes for runs that may exceed their time or memory, and result folders that can be resumed.
 export module aabblab.trials;
 
+import aabb.collision_filter;
 import aabb.digest;
 import aabb.pipeline;
 import aabb.registry;
@@ -52,6 +53,12 @@ public:
     explicit scene_frames(std::unique_ptr<aabb::mesh_scene> scene, std::string file = {})
         : meshes_(std::move(scene)), poses_file_(std::move(file)) {}
 
+    /// Leaves out pairs from now on: stages that are made for this scene find only those that the filter keeps.
+    /// @param filter null for none
+    void filter_by(std::shared_ptr<const aabb::collision_filter> filter) { filter_ = std::move(filter); }
+    /// Null if no pair is left out.
+    [[nodiscard]] const aabb::collision_filter* filter() const { return filter_.get(); }
+
     [[nodiscard]] std::size_t objects() const { return meshes_ ? meshes_->mesh_of.size() : box_scene_->objects(); }
     [[nodiscard]] std::size_t frames() const { return meshes_ ? meshes_->frames() : box_scene_->frames(); }
     /// Advances to the next frame; false after the last.
@@ -79,6 +86,7 @@ private:
 
     std::unique_ptr<aabb::box_scene> box_scene_;
     std::unique_ptr<aabb::mesh_scene> meshes_;
+    std::shared_ptr<const aabb::collision_filter> filter_;
     std::string poses_file_;      // empty if poses are generated
     std::size_t frames_run_ = 0;  // including the current one
     std::vector<aabb::box> boxes_;
@@ -96,7 +104,9 @@ struct stages {
 class stage_runner {
 public:
     stage_runner(const candidate& tested, const scene_frames& scene, aabb::instrumentation counted);
-    stage_runner(stages given, const scene_frames& scene);
+    /// @param when pairs are left out, if the scene has a filter
+    stage_runner(stages given, const scene_frames& scene, aabb::filtering when = aabb::filtering::early,
+                 aabb::instrumentation counted = aabb::instrumentation::none);
 
     /// Execute the phases of a frame, which are timed separately: update of the stages, broad phase, narrow phase.
     /// @throws aabb::input_error with file and frame if poses from a file are rejected.

@@ -168,7 +168,7 @@ scene_validation validate_scene(const scene_choice& choice, std::span<const cand
 /// @param choice the description of the scene, for messages
 scene_validation validate_scene(const scene_choice& choice, scene_frames& scene,
                                 std::span<const candidate> candidates) {
-    aabb::ground_truth truth(scene.objects(), scene.meshes());
+    aabb::ground_truth truth(scene.objects(), scene.meshes(), scene.filter());
     tally truth_tally(scene.meshes() != nullptr);
     std::deque<validated_runner> runners;
     std::vector<validated_row> results(candidates.size());
