@@ -8,11 +8,10 @@ export namespace aabb {
 /// One of two sets whose objects are tested against those of the other set only.
 enum class object_set : std::uint8_t { none = 0, a = 1, b = 2 };
 
-/// What collision filtering knows of an object; an object of which nothing was said has these defaults, with which it
-/// is tested against every other such object. Groups and masks are those of Bullet (`m_collisionFilterGroup`,
-/// `m_collisionFilterMask`, manual 2.83, "Filtering Collisions") and of Box2D (`b2Filter::categoryBits`, `maskBits`,
-/// manual 2.4, "Filtering"), with Box2D's defaults. Other engines (ODE, MuJoCo) ask for one of the two conditions on
-/// masks only.
+/// What collision filtering knows of an object; an object of which nothing was said has these defaults, and is tested
+/// against every other such object. Groups and masks are those of Bullet ("Collision Filtering" in its wiki:
+/// `m_collisionFilterGroup`, `m_collisionFilterMask`) and of Box2D (`b2Filter` in its manual: `categoryBits`,
+/// `maskBits`), with Box2D's defaults.
 struct object_filter {
     std::uint32_t group = 1;            ///< the groups of the object, one per bit
     std::uint32_t mask = 0xffff'ffff;   ///< the groups against which it is tested
