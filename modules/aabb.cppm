@@ -4,6 +4,7 @@ export module aabb;
 
 export import aabb.base;
 export import aabb.collision_filter;
+export import aabb.containment;
 export import aabb.costs;
 export import aabb.counters;
 export import aabb.digest;

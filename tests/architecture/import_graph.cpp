@@ -18,6 +18,7 @@ const std::vector<std::string> rooms = {
     "modules/global_search",
     "modules/distance_stage",
     "modules/local_detection",
+    "modules/containment",
     "modules/pipeline",
     "modules/collision_filter",
     "strategies/columns",
@@ -31,6 +32,7 @@ const std::vector<std::string> rooms = {
     "strategies/tree",
     "strategies/triangle",
     "strategies/distance",
+    "strategies/touching",
     "strategies/registry",
     "strategies/selection",
     "validation/engines",
@@ -80,8 +82,8 @@ struct dependency {
 };
 
 /// Rooms that expose one module, of their own name, and hide all others.
-const std::set<std::string> hiding_rooms = {"strategies/columns", "strategies/split_mesh", "strategies/wide_tree",
-                                            "strategies/distance"};
+const std::set<std::string> hiding_rooms = {"strategies/columns", "strategies/distance", "strategies/split_mesh",
+                                            "strategies/touching", "strategies/wide_tree"};
 
 /// Whether the module is one that its room hides.
 bool is_hidden(const dependency& d) {

@@ -1,0 +1,213 @@
+module aabb.containment;
+
+#pragma clang fp contract(off) reassociate(off) reciprocal(off)  // see aabb.base:floating_point
+
+namespace aabb {
+
+namespace {
+
+__extension__ using unsigned_128 = unsigned __int128;
+
+/// Disjoint sets of vertices (Tarjan, "Efficiency of a good but not linear set union algorithm", 1975), with paths
+/// halved.
+class vertex_sets {
+public:
+    explicit vertex_sets(std::size_t vertices) : parent_(vertices) { std::iota(parent_.begin(), parent_.end(), 0U); }
+
+    [[nodiscard]] std::uint32_t set_of(std::uint32_t v) {
+        while (parent_[v] != v) v = parent_[v] = parent_[parent_[v]];
+        return v;
+    }
+    void join(std::uint32_t p, std::uint32_t q) {
+        const auto [low, high] = std::minmax({set_of(p), set_of(q)});
+        parent_[high] = low;
+    }
+
+private:
+    std::vector<std::uint32_t> parent_;
+};
+
+/// An edge of a triangle, between two positions.
+struct directed_edge {
+    std::uint32_t low, high;
+    bool goes_up;  ///< from `low` to `high`
+};
+
+/// A sum of products of three doubles, exactly, in two's complement. In units of 2^-3222, the cube of the least double,
+/// a product has 6294 bits at most, so that 6400 bits hold more terms than there can be.
+class exact_sum {
+public:
+    void add(double x, double y, double z) noexcept {
+        const factor a(x), b(y), c(z);
+        if (a.mantissa == 0 || b.mantissa == 0 || c.mantissa == 0) return;
+        const unsigned_128 ab = unsigned_128{a.mantissa} * b.mantissa;
+        const unsigned_128 low = unsigned_128{static_cast<std::uint64_t>(ab)} * c.mantissa;
+        const unsigned_128 high = (ab >> 64U) * c.mantissa + (low >> 64U);
+        const std::array product{static_cast<std::uint64_t>(low), static_cast<std::uint64_t>(high),
+                                 static_cast<std::uint64_t>(high >> 64U), std::uint64_t{0}};
+        const unsigned place = a.place + b.place + c.place;
+        const bool is_negative = (a.is_negative != b.is_negative) != c.is_negative;
+        std::uint64_t shifted_out = 0, carry = 0;
+        for (std::size_t i = 0; i < product.size() || carry != 0; ++i) {
+            const std::size_t at = place / 64 + i;
+            if (at == limbs_.size()) break;  // a carry out of the top belongs to the complement
+            std::uint64_t term = carry;
+            carry = 0;
+            if (i < product.size()) {
+                const unsigned_128 shifted = (unsigned_128{product[i]} << place % 64) | shifted_out;
+                shifted_out = static_cast<std::uint64_t>(shifted >> 64U);
+                carry = static_cast<std::uint64_t>(
+                    __builtin_add_overflow(term, static_cast<std::uint64_t>(shifted), &term));
+            }
+            carry += static_cast<std::uint64_t>(is_negative ? __builtin_sub_overflow(limbs_[at], term, &limbs_[at])
+                                                            : __builtin_add_overflow(limbs_[at], term, &limbs_[at]));
+        }
+    }
+
+    [[nodiscard]] int sign() const noexcept {
+        if (limbs_.back() >> 63U != 0) return -1;
+        return std::ranges::any_of(limbs_, [](std::uint64_t x) { return x != 0; }) ? 1 : 0;
+    }
+
+private:
+    /// The magnitude of a double, mantissa · 2^(place - 1074).
+    struct factor {
+        std::uint64_t mantissa;
+        unsigned place;
+        bool is_negative;
+
+        explicit factor(double x) noexcept {
+            const auto bits = std::bit_cast<std::uint64_t>(x);
+            const auto exponent = static_cast<unsigned>(bits >> 52U & 0x7ffU);
+            mantissa = bits & 0xf'ffff'ffff'ffffU;
+            if (exponent != 0) mantissa |= std::uint64_t{1} << 52U;
+            place = std::max(exponent, 1U) - 1;
+            is_negative = std::signbit(x);
+        }
+    };
+
+    std::array<std::uint64_t, 100> limbs_{};
+};
+
+/// The sign of the volume that triangles enclose: of the sum of det(p, q, r) over triangles pqr, six times the volume
+/// of the tetrahedron that pqr spans with the origin.
+///
+/// In double, a term is rounded twice, a difference of two once, and each of the 3 n sums once: the error is below
+/// (3 n + 4) u of the terms' magnitudes; twice that covers the rounding of this bound. If the first product of a term
+/// underflows, by less than 2^-1074, the error is that times the third factor. After an overflow, the bound is infinite
+/// or NaN.
+int enclosed_volume_sign(const mesh& m, std::span<const std::uint32_t> triangles) {
+    double volume = 0, magnitude = 0, greatest = 1;
+    for (const std::uint32_t t : triangles) {
+        const triangle3d p = m.given_triangle(t);
+        for (int i = 0; i < 3; ++i) {
+            greatest = std::max(greatest, std::abs(p[2][i]));
+            const int j = (i + 1) % 3, k = (i + 2) % 3;
+            const double plus = p[0][i] * p[1][j] * p[2][k], minus = p[0][i] * p[1][k] * p[2][j];
+            volume += plus - minus;
+            magnitude += std::abs(plus) + std::abs(minus);
+        }
+    }
+    constexpr double unit = std::numeric_limits<double>::epsilon() / 2;
+    const auto count = static_cast<double>(triangles.size());
+    const double error = 2 * (3 * count + 4) * unit * magnitude + 12 * count * 0x1p-1074 * greatest;
+    if (volume > error) return 1;
+    if (volume < -error) return -1;
+    exact_sum sum;
+    for (const std::uint32_t t : triangles) {
+        const triangle3d p = m.given_triangle(t);
+        for (int i = 0; i < 3; ++i) {
+            const int j = (i + 1) % 3, k = (i + 2) % 3;
+            sum.add(p[0][i], p[1][j], p[2][k]);
+            sum.add(-p[0][i], p[1][k], p[2][j]);
+        }
+    }
+    return sum.sign();
+}
+
+/// Counts the edges of each component that belong to an odd number of triangles, and sets whether it is oriented.
+/// @param first by vertex, the vertex that stands for its position
+/// @param part_of by vertex that stands for a position, its component
+void count_open_edges(const mesh& m, std::span<const std::uint32_t> first, std::span<const std::uint32_t> part_of,
+                      std::vector<surface_component>& parts) {
+    std::vector<directed_edge> edges;
+    edges.reserve(3 * m.triangles.size());
+    for (const auto& corners : m.triangles)
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::uint32_t from = first[corners[i]], to = first[corners[(i + 1) % 3]];
+            if (from != to) edges.push_back({std::min(from, to), std::max(from, to), from < to});
+        }
+    const auto ends = [](const directed_edge& e) { return std::uint64_t{e.low} << 32U | e.high; };
+    std::ranges::sort(edges, {}, ends);
+    for (surface_component& part : parts) part.is_oriented = true;
+    for (std::size_t i = 0; i < edges.size();) {
+        surface_component& part = parts[part_of[edges[i].low]];
+        std::size_t up = 0, down = 0;
+        for (const std::uint64_t edge = ends(edges[i]); i < edges.size() && ends(edges[i]) == edge; ++i)
+            ++(edges[i].goes_up ? up : down);
+        part.open_edges += (up + down) % 2;
+        part.is_oriented &= up == down;
+    }
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> first_at_position(const mesh& m) {
+    std::vector<std::uint32_t> first(m.vertices.size());
+    std::vector<bool> is_used(m.vertices.size());
+    for (const auto& corners : m.triangles)
+        for (const std::uint32_t v : corners) is_used[v] = true;
+    std::vector<std::uint32_t> by_position;
+    for (std::uint32_t v = 0; v < m.vertices.size(); ++v)
+        if (is_used[v]) by_position.push_back(v);
+    std::ranges::sort(by_position, [&](std::uint32_t p, std::uint32_t q) {
+        const vec3d at_p = m.given_vertex(p), at_q = m.given_vertex(q);
+        for (int k = 0; k < 3; ++k)
+            if (at_p[k] != at_q[k]) return at_p[k] < at_q[k];
+        return p < q;
+    });
+    for (std::size_t i = 0; i < by_position.size(); ++i) {
+        const std::uint32_t v = by_position[i];
+        const bool is_new = i == 0 || m.given_vertex(v) != m.given_vertex(by_position[i - 1]);
+        first[v] = is_new ? v : first[by_position[i - 1]];
+    }
+    return first;
+}
+
+surface_components components_of(const mesh& m) {
+    const std::vector<std::uint32_t> first = first_at_position(m);
+    vertex_sets sets(m.vertices.size());
+    for (const auto& corners : m.triangles) {
+        sets.join(first[corners[0]], first[corners[1]]);
+        sets.join(first[corners[0]], first[corners[2]]);
+    }
+    surface_components components;
+    constexpr std::uint32_t unseen = 0xffffffff;
+    std::vector<std::uint32_t> part_of(m.vertices.size(), unseen);
+    for (std::uint32_t t = 0; t < m.triangle_count(); ++t) {
+        const std::uint32_t set = sets.set_of(first[m.triangles[t][0]]);
+        if (part_of[set] == unseen) {
+            part_of[set] = static_cast<std::uint32_t>(components.parts.size());
+            components.parts.push_back({.first_triangle = t});
+        }
+        for (const std::uint32_t v : m.triangles[t]) part_of[first[v]] = part_of[set];
+        surface_component& part = components.parts[part_of[set]];
+        ++part.triangles;
+        part.bounds = merged(part.bounds, bounds_of(m.triangle(t)));
+        components.of_triangles.push_back(part_of[set]);
+    }
+    count_open_edges(m, first, part_of, components.parts);
+    // The triangles by component, in ascending order.
+    std::vector<std::size_t> next(components.parts.size());
+    for (std::size_t c = 1; c < next.size(); ++c) next[c] = next[c - 1] + components.parts[c - 1].triangles;
+    std::vector<std::uint32_t> grouped(m.triangles.size());
+    for (std::uint32_t t = 0; t < m.triangle_count(); ++t) grouped[next[components.of_triangles[t]]++] = t;
+    std::span<const std::uint32_t> rest(grouped);
+    for (surface_component& part : components.parts) {
+        if (part.is_oriented) part.volume_sign = enclosed_volume_sign(m, rest.first(part.triangles));
+        rest = rest.subspan(part.triangles);
+    }
+    return components;
+}
+
+}  // namespace aabb
