@@ -4,8 +4,11 @@
 #include "composing.hpp"
 #include "distances.hpp"
 
+import aabb.containment;
 import aabb.geometry;
+import aabb.touching;
 import aabblab.configs;
+import aabblab.drawing;
 import aabblab.inputs;
 import aabblab.numbers;
 import aabblab.pair_output;
@@ -26,12 +29,12 @@ struct collide_request {
     std::optional<std::string> b;
     std::array<std::optional<std::string>, 2> poses;
     method_options method{{aabb::stage::local_detection}};
-    std::optional<std::string> out, poses_of_b;
+    std::optional<std::string> out, draw, poses_of_b;
     std::size_t repeats = 1;
     std::optional<double> within;
     std::string self;  ///< a key of `self_choices`; empty without --self
     bool touching = true, first = false, count = false, geometry = false, exit_code = false, json = false;
-    bool distance = false;
+    bool distance = false, relation = false;
 
     [[nodiscard]] std::vector<std::string> meshes() const { return b ? std::vector{a, *b} : std::vector{a}; }
     /// The query: all pairs, the first or their number, of A and B or of A with itself, at one pose or many.
@@ -40,6 +43,7 @@ struct collide_request {
         return {.ask = ask,
                 .self = self.empty() ? std::nullopt : std::optional(self_choices.at(self)),
                 .hits = {.touching = touching, .geometry = geometry},
+                .relations = relation,
                 .by_pose = poses_of_b.has_value(),
                 .repeats = repeats,
                 .between = a + " against " + b.value_or("itself")};
@@ -52,6 +56,39 @@ nlohmann::ordered_json geometry_of(const intersecting_pair& pair) {
     for (std::uint32_t i = 0; i < common.size; ++i) geometry["corners"].push_back(common.corners[i].at);
     geometry["error"] = common.error.at;
     return geometry;
+}
+
+/// Adds how the meshes lie at each pose without intersecting triangles, and the surfaces that this depends on.
+void add_relations(nlohmann::ordered_json& summary, const collide_request& request, const mesh_result& result) {
+    nlohmann::ordered_json relations, inside, meeting;
+    for (const std::optional<mesh_relation>& lie : result.relations) {
+        relations.push_back(lie && lie->solids ? nlohmann::ordered_json(name_of(*lie->solids)) : nullptr);
+        nlohmann::ordered_json pairs = nlohmann::ordered_json::array();
+        if (lie) {
+            for (const auto [a, b] : lie->a_inside_b) pairs.push_back({a, b, "a_inside_b"});
+            for (const auto [a, b] : lie->b_inside_a) pairs.push_back({a, b, "b_inside_a"});
+        }
+        inside.push_back(lie ? pairs : nullptr);
+        nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+        if (lie)
+            for (const aabb::component_contact& contact : lie->contacts)
+                rows.push_back({contact.a, contact.b, name_of(contact.relation)});
+        meeting.push_back(rows);
+    }
+    summary["relation"] = relations.empty() || request.poses_of_b ? relations : relations.front();
+    summary["inside"] = inside.empty() || request.poses_of_b ? inside : inside.front();
+    if (request.relation) summary["meeting"] = meeting.empty() || request.poses_of_b ? meeting : meeting.front();
+    for (const surface_summary& surface : result.surfaces)
+        summary["surfaces"].push_back({{"components", surface.components},
+                                       {"closed", surface.closed},
+                                       {"open_edges", surface.open_edges},
+                                       {"oriented", surface.oriented},
+                                       {"inward", surface.inward},
+                                       {"intersects_itself", nullptr}});
+    if (request.relation)
+        for (std::size_t mesh = 0; mesh < result.surfaces.size(); ++mesh)
+            summary["surfaces"][mesh]["intersects_itself"] = result.surfaces[mesh].intersects_itself.value_or(false);
+    summary["relation_ms"] = result.relation_ms;
 }
 
 /// Prints one JSON object. With --poses, results are arrays by pose; values not asked for are null or absent.
@@ -81,6 +118,7 @@ void print_json(const collide_request& request, const mesh_result& result) {
     }
     if (request.first) summary["first"] = by_pose(first);
     if (request.first && request.geometry) summary["geometry"] = by_pose(geometry);
+    if (request.self.empty()) add_relations(summary, request, result);
     summary["method"] = result.method.name;
     summary["exact"] = result.method.exact;
     summary["exact_for"] = nullptr;
@@ -117,6 +155,7 @@ void print_results(const collide_request& request, const mesh_result& result) {
     for (const kind_counts& counts : result.kinds)
         for (std::size_t k = 0; k < kinds.size(); ++k) kinds[k] += counts[k];
     print(to_text(kinds));
+    for (const std::string& sentence : sentences_about_relations(result)) print_paragraph(sentence);
     if (result.neighbours) print(fmt::format("{} more pairs that share a vertex\n", grouped(*result.neighbours)));
     if (result.degenerate.value_or(0) > 0) print(counted(*result.degenerate, "triangle") + " without area\n");
 }
@@ -167,6 +206,11 @@ void reject_contradictions(const collide_request& request) {
     reject_if(request.first && request.count, "--first and --count exclude each other");
     reject_if(request.count && request.out, "--count stores no pairs, so --out has nothing to write");
     reject_if(request.geometry && request.count, "--count stores no pairs, so --geometry cannot be combined with it");
+    reject_if(request.relation && !request.self.empty(), "--relation is about two meshes, so omit --self");
+    reject_if(request.relation && (request.first || request.count),
+              "--relation needs all pairs, so omit --first and --count");
+    reject_if(request.count && request.draw, "--count stores no pairs, so --draw has nothing to show");
+    reject_if(request.poses_of_b && request.draw, "--draw shows one pose of B; give --pose-b instead of --poses");
     reject_if(request.geometry && !request.out && !request.first,
               "--geometry adds columns to the pairs, so give --out FILE, or --first for one pair");
 }
@@ -182,6 +226,14 @@ std::optional<number_table> open_rows(const collide_request& request) {
                                                : "a,b";
     if (request.geometry) columns += "," + std::string(intersection_columns);
     return std::optional<number_table>(std::in_place, *request.out, columns);
+}
+
+/// Opens the file of --draw, which must not overwrite a mesh or the pairs.
+std::optional<hit_drawing> open_drawing(const collide_request& request) {
+    if (!request.draw) return std::nullopt;
+    require_no_mesh(*request.draw, request.meshes());
+    if (request.out) require_two_files("--out", *request.out, "--draw", *request.draw);
+    return std::optional<hit_drawing>(std::in_place, *request.draw, "--draw");
 }
 
 /// Finds the intersecting triangles of two meshes, or of one with itself, and prints them. Bad options, poses and
@@ -201,9 +253,12 @@ int collide(const collide_request& request) {
         return 0;
     }
     std::optional<number_table> rows = open_rows(request);
-    const mesh_result result = search_meshes(request.query(), choice, read_meshes(request.meshes()), pose_a,
-                                             std::move(poses_b), rows ? &*rows : nullptr);
+    std::optional<hit_drawing> drawing = open_drawing(request);
+    const mesh_result result =
+        search_meshes(request.query(), choice, read_meshes(request.meshes()), pose_a, std::move(poses_b),
+                      rows ? &*rows : nullptr, drawing ? &*drawing : nullptr);
     if (rows) rows->commit();
+    if (drawing) drawing->commit();
     if (request.json)
         print_json(request, result);
     else
@@ -251,6 +306,13 @@ void add_collide(const command_parser& program) {
     command.flag("--geometry", &request.geometry,
                  "Add to each pair the triangles' intersection, in world coordinates: columns kind, number of "
                  "vertices, error bounds on x, y, z, vertices");
+    command.flag(
+        "--relation", &request.relation,
+        "Say also of components that share points how they lie: they touch, one of them from inside or not, or "
+        "cross; of others this is said anyway");
+    command.option("--draw FILE", &request.draw,
+                   "Draw the meshes at their poses to this file (.ply, .obj): triangles that intersect in red, their "
+                   "intersections as black lines");
     command.flag("--exit-code", &request.exit_code,
                  "Exit with status 1 (as diff) if triangles intersect; with --self=all, only if two without a shared "
                  "corner intersect");

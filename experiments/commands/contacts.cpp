@@ -4,6 +4,7 @@
 #include "composing.hpp"
 #include "filtering.hpp"
 
+import aabblab.drawing;
 import aabblab.files;
 import aabblab.inputs;
 import aabblab.numbers;
@@ -19,7 +20,7 @@ struct contacts_request {
     std::vector<std::string> meshes;
     method_options method{{aabb::stage::global_search, aabb::stage::local_detection}};
     filter_files filter;
-    std::optional<std::string> out;
+    std::optional<std::string> out, draw, frame;
     std::optional<double> within;
     bool touching = true, geometry = false, json = false;
 };
@@ -56,6 +57,24 @@ std::string text_of(const contacts_request& request, const search_method& method
                        result.build_ms, result.mean_ms());
 }
 
+/// Opens the file of --draw, which must not overwrite an input or the contacts.
+std::optional<hit_drawing> open_drawing(const contacts_request& request) {
+    if (request.frame && !request.draw)
+        throw aabb::input_error("--frame is the frame that --draw shows, so give --draw FILE");
+    if (!request.draw) return std::nullopt;
+    require_other_file(*request.draw, request.motion);
+    require_no_mesh(*request.draw, request.meshes);
+    if (request.out) require_two_files("--out", *request.out, "--draw", *request.draw);
+    return std::optional<hit_drawing>(std::in_place, *request.draw, "--draw");
+}
+
+/// The frame of --frame, by default the first.
+std::uint32_t frame_of(const contacts_request& request, std::size_t frames) {
+    return static_cast<std::uint32_t>(
+        parse_whole(request.frame.value_or("0"), 0, frames - 1,
+                    fmt::format("--frame is a frame of the motion, a whole number from 0 to {}", frames - 1)));
+}
+
 /// Finds the contacts of moving meshes in each frame, writes them to the file of --out, and prints totals.
 void find_contacts(const contacts_request& request) {
     if (request.geometry && !request.out)
@@ -76,11 +95,16 @@ void find_contacts(const contacts_request& request) {
         if (request.geometry) columns += "," + std::string(intersection_columns);
         rows.emplace(*request.out, columns);
     }
+    std::optional<hit_drawing> drawing = open_drawing(request);
     scene_frames scene(open_motion(request.motion, read_meshes(request.meshes)), request.motion);
     scene.filter_by(read_filter(request.filter, scene.objects()));
+    std::optional<frame_drawing> drawn;
+    if (drawing) drawn.emplace(frame_of(request, scene.frames()), *drawing);
     search_method method = method_of(choice, traits_of(scene));
-    const frames_result result = search_frames(scene, method, rows ? &*rows : nullptr,
-                                               {.touching = request.touching, .geometry = request.geometry});
+    const frames_result result =
+        search_frames(scene, method, rows ? &*rows : nullptr,
+                      {.touching = request.touching, .geometry = request.geometry}, drawn ? &*drawn : nullptr);
+    if (drawing) drawing->commit();
     print(request.json ? json_of(request, method, result) : text_of(request, method, result));
 }
 
@@ -105,6 +129,10 @@ void add_contacts(const command_parser& program) {
     command.flag("--geometry", &request.geometry,
                  "Add to each contact the triangles' intersection, in world coordinates: columns kind, number of "
                  "vertices, error bounds on x, y, z, vertices");
+    command.option("--draw FILE", &request.draw,
+                   "Draw one frame to this file (.ply, .obj): triangles that intersect in red, their intersections as "
+                   "black lines");
+    command.option("--frame N", &request.frame, "The frame that --draw shows (default 0)");
     command.flag("--json", &request.json, "Print the summary as JSON");
 }
 

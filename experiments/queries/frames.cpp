@@ -123,7 +123,9 @@ search_method method_of(const search_choice& choice, const aabb::scene_traits& t
 /// Searches every frame, and sums up times and results; moves the stages out of `method`.
 /// @param rows receives every result and is committed at the end; may be null
 /// @param hits which pairs of triangles are reported, and whether with their intersection
-frames_result search_frames(scene_frames& scene, search_method& method, number_table* rows, const hit_choice& hits) {
+/// @param drawing receives the objects and contacts of its frame; may be null
+frames_result search_frames(scene_frames& scene, search_method& method, number_table* rows, const hit_choice& hits,
+                            frame_drawing* drawing) {
     const bool meshes = scene.meshes() != nullptr;
     frames_result result;
     result.objects = scene.objects();
@@ -139,6 +141,10 @@ frames_result search_frames(scene_frames& scene, search_method& method, number_t
         result.ms.push_back(whole_nanoseconds(frame.ms()));
         const std::string where = fmt::format("{}, frame {}", method.name, frame.number);
         contacts.clear();
+        hit_drawing* const drawn = drawing && drawing->frame == frame.number ? &drawing->drawing : nullptr;
+        if (drawn)
+            for (std::size_t object = 0; object < scene.poses().size(); ++object)
+                drawn->add_object(scene.meshes()->meshes[scene.meshes()->mesh_of[object]], scene.poses()[object]);
         if (meshes) {
             require_each_once(frame.contacts, where);
             for (const aabb::contact& c : frame.contacts) {
@@ -146,6 +152,7 @@ frames_result search_frames(scene_frames& scene, search_method& method, number_t
                 const aabb::index_pair triangles{c.triangle_a, c.triangle_b};
                 if (!wanted.keeps(geometry.kind(triangles))) continue;
                 contacts.push_back(c);
+                if (drawn) drawn->add_hit({c.a, c.triangle_a}, {c.b, c.triangle_b}, geometry(triangles));
                 if (rows)
                     rows->add({frame.number, c.a, c.b, c.triangle_a, c.triangle_b},
                               hits.geometry ? to_cells(geometry(triangles)) : "");

@@ -154,9 +154,10 @@ query_result result_of(stage_runner& runner, const mesh_query& query, const aabb
 /// Records the wanted pairs of each pose in order, with the intersections of their triangles, and rejects duplicates.
 class pair_record {
 public:
-    /// @param rows may be null
-    pair_record(const mesh_query& query, const scene_frames& scene, mesh_result& result, number_table* rows)
-        : query_(query), scene_(scene), result_(result), method_(result.method), rows_(rows) {}
+    /// @param rows,drawing may be null
+    pair_record(const mesh_query& query, const scene_frames& scene, mesh_result& result, number_table* rows,
+                hit_drawing* drawing)
+        : query_(query), scene_(scene), result_(result), method_(result.method), rows_(rows), drawing_(drawing) {}
 
     /// Records the pairs of one pose: removes those that only touch unless wanted, counts the rest by kind, and writes
     /// them. Neighbours, unless among the pairs (`neighbours_too`), follow from the mesh; the query has counted them.
@@ -188,9 +189,11 @@ private:
     void add_sorted(std::span<const aabb::index_pair> pairs) {
         digest_.add(pose_, pairs);
         if (query_.take) query_.take(pose_, pairs);
-        if (!rows_ && !query_.hits.geometry && query_.ask != query_kind::first) return;
+        if (!rows_ && !drawing_ && !query_.hits.geometry && query_.ask != query_kind::first) return;
+        const auto last = static_cast<std::uint32_t>(scene_.meshes()->meshes.size() - 1);
         for (const aabb::index_pair pair : pairs) {
             intersecting_pair row{pair, {}};
+            if (drawing_) drawing_->add_hit({0, pair.a}, {last, pair.b}, (*geometry_)(pair));
             if (query_.hits.geometry) row.common = (*geometry_)(pair);
             if (rows_) add_row(row);
             if (query_.ask == query_kind::first) result_.first.back() = row;
@@ -214,6 +217,7 @@ private:
     mesh_result& result_;
     search_method& method_;
     number_table* rows_;
+    hit_drawing* drawing_;
     std::optional<hit_geometry> geometry_;
     aabb::digest digest_;
     std::uint32_t pose_ = 0;
@@ -233,7 +237,7 @@ std::optional<double> bytes_per_triangle_of(const mesh_result& result) {
 
 /// Runs and times the query for each pose of the second mesh, several times if asked; records the first repeat.
 mesh_result search_meshes(const mesh_query& query, const search_choice& choice, std::vector<aabb::mesh> meshes,
-                          const aabb::pose& pose_a, given_poses poses_b, number_table* rows) {
+                          const aabb::pose& pose_a, given_poses poses_b, number_table* rows, hit_drawing* drawing) {
     const std::size_t poses = poses_b.poses.size();
     scene_frames scene(
         std::make_unique<posed_meshes>(std::move(meshes), pose_a, std::move(poses_b.poses), query.repeats));
@@ -250,7 +254,18 @@ mesh_result search_meshes(const mesh_query& query, const search_choice& choice, 
     // are stored only if they are reported and an inexact method may have missed some; with an exact method, they
     // follow from the mesh.
     const bool neighbours_too = query.self == self_pairs::all && !result.method.exact && query.ask != query_kind::count;
-    pair_record record(query, scene, result, rows);
+    pair_record record(query, scene, result, rows, drawing);
+    const std::vector<aabb::mesh>& searched = scene.meshes()->meshes;
+    const auto intersects_itself = [&](std::uint32_t mesh) {
+        bool intersects = false;
+        searcher->each_self_pair(mesh, [&](aabb::index_pair pair) {
+            intersects = is_reported(searched[mesh], pair, self_pairs::intersecting);
+            return intersects;
+        });
+        return intersects;
+    };
+    relation_search relations(searched.front(), searched.back(),
+                              query.relations ? relation_search::self_query(intersects_itself) : nullptr);
     // Which pairs only touch is known once they are stored.
     mesh_query search = query;
     if (!query.hits.touching) search.ask = query_kind::pairs;
@@ -268,6 +283,8 @@ mesh_result search_meshes(const mesh_query& query, const search_choice& choice, 
                 fmt::format("{}{}: {}", poses_b.place_of(frame % poses), query.between, error.what()));
         }
         if (frame >= poses) continue;
+        if (drawing && frame == 0)
+            for (std::size_t i = 0; i < searched.size(); ++i) drawing->add_object(searched[i], scene.poses()[i]);
         if (query.self && query.self != self_pairs::intersecting) result.neighbours = hits.neighbours;
         if (!query.self && search.ask != query_kind::count) {
             for (const aabb::contact& c : searcher->sorted_contacts())
@@ -275,10 +292,20 @@ mesh_result search_meshes(const mesh_query& query, const search_choice& choice, 
             hits.count = hits.pairs.size();
         }
         result.counts.push_back(hits.count);
+        if (!query.self && result.method.exact) {
+            result.relations.emplace_back();
+            const aabb::pose &at_a = scene.poses().front(), &at_b = scene.poses().back();
+            if (hits.count == 0)
+                result.relations.back() = relations.at(at_a, at_b);
+            else if (query.relations)
+                result.relations.back() = relations.at(at_a, at_b, hits.pairs);
+        }
         if (search.ask != query_kind::count) record.add(frame, std::move(hits), neighbours_too);
     }
     if (query.self && query.ask != query_kind::first)
         result.degenerate = count_degenerate(scene.meshes()->meshes.front());
+    result.surfaces.assign(relations.surfaces().begin(), relations.surfaces().end());
+    result.relation_ms = relations.ms();
     result.bytes = searcher->local_bytes();
     result.bytes_per_triangle = bytes_per_triangle_of(result);
     if (query.ask != query_kind::count) result.digest = record.digest();

@@ -3,11 +3,14 @@ export module aabblab.queries;
 
 import aabb.distance;
 import aabb.distance_stage;
+import aabb.containment;
 import aabb.pipeline;
 import aabb.registry;
 import aabb.selection;
 import aabb.std;
+import aabb.touching;
 import aabblab.configs;
+import aabblab.drawing;
 import aabblab.inputs;
 import aabblab.pair_output;
 import aabblab.trials;
@@ -87,6 +90,12 @@ struct search_method {
 /// @throws aabb::input_error on an unknown engine or an invalid composition.
 [[nodiscard]] search_method method_of(const search_choice& choice, const aabb::scene_traits& traits);
 
+/// A drawing of one frame of meshes.
+struct frame_drawing {
+    std::uint32_t frame;
+    hit_drawing& drawing;
+};
+
 struct frames_result {
     std::size_t objects = 0;
     std::uint64_t pairs = 0;         ///< overlapping boxes, summed over the frames, as are the next two
@@ -103,9 +112,10 @@ struct frames_result {
 };
 /// Searches every frame of a scene.
 /// @param rows receives frame and pair, or frame, objects and triangles, and is committed; may be null
+/// @param drawing receives the objects and contacts of one frame; may be null
 /// @throws defect if a result is found twice.
 [[nodiscard]] frames_result search_frames(scene_frames& scene, search_method& method, number_table* rows,
-                                          const hit_choice& hits = {});
+                                          const hit_choice& hits = {}, frame_drawing* drawing = nullptr);
 
 /// The scene with swept boxes: each is the box of an object in this frame and in the previous one, so that objects that
 /// meet on a straight way between the two overlap.
@@ -123,6 +133,7 @@ struct mesh_query {
     query_kind ask = query_kind::pairs;
     std::optional<self_pairs> self = {};
     hit_choice hits = {};
+    bool relations = false;    ///< whether to find how components lie that share points, too
     bool by_pose = false;      ///< whether rows include the pose
     std::size_t repeats = 1;   ///< each runs all poses
     std::string between = {};  ///< "a.off against b.off", for messages
@@ -133,6 +144,46 @@ struct mesh_query {
 struct intersecting_pair {
     aabb::index_pair triangles;
     std::optional<aabb::triangle_intersection> common;  ///< if the query asks for it
+};
+
+/// The surface of a mesh, as far as it matters for what lies inside it.
+struct surface_summary {
+    std::uint32_t components = 0;
+    std::uint32_t closed = 0, oriented = 0, inward = 0;  ///< of the components
+    std::uint64_t open_edges = 0;                        ///< edges of an odd number of triangles
+    bool intersects_itself = false;                      ///< only of a mesh with a closed component
+};
+
+/// How two meshes lie at a pose.
+struct mesh_relation {
+    std::optional<aabb::solid_relation> solids;            ///< if no triangles intersect
+    std::vector<aabb::index_pair> a_inside_b, b_inside_a;  ///< components (of A, of B) that share no point
+    std::vector<aabb::component_contact> contacts;         ///< components that share a point, if asked
+};
+
+/// Decides how two meshes lie: where no triangles intersect, by one ray per component. If their boxes overlap at any
+/// pose, trees and components are prepared once.
+class relation_search {
+public:
+    /// Whether mesh 0 or 1 intersects itself.
+    using self_query = std::function<bool(std::uint32_t mesh)>;
+    /// @param a,b must outlive this object
+    relation_search(const aabb::mesh& a, const aabb::mesh& b, self_query intersects_itself);
+    ~relation_search();
+
+    /// At poses at which no triangles intersect.
+    [[nodiscard]] mesh_relation at(const aabb::pose& pose_a, const aabb::pose& pose_b);
+    /// @param hits all pairs of intersecting triangles
+    [[nodiscard]] mesh_relation at(const aabb::pose& pose_a, const aabb::pose& pose_b,
+                                   std::span<const aabb::index_pair> hits);
+    /// Of A and B; empty if every pose was decided by the boxes.
+    [[nodiscard]] std::span<const surface_summary> surfaces() const;
+    /// The time of all decisions.
+    [[nodiscard]] double ms() const;
+
+private:
+    struct state;
+    std::unique_ptr<state> state_;
 };
 
 struct mesh_result {
@@ -149,16 +200,23 @@ struct mesh_result {
     std::vector<double> query_ms;  ///< by pose, for each repeat
     std::vector<aabb::part_bytes> bytes;
     std::optional<double> bytes_per_triangle;  ///< of the trees; empty for an engine that does not report it
+    /// By pose, of an exact method on two meshes: how they lie if no triangles intersect, or if the query asks.
+    std::vector<std::optional<mesh_relation>> relations;
+    std::vector<surface_summary> surfaces;  ///< of A and B if a relation needed them, else empty
+    double relation_ms = 0;
 };
+/// Sentences about how the meshes lie, and about surfaces that are not closed, face inward or intersect themselves.
+[[nodiscard]] std::vector<std::string> sentences_about_relations(const mesh_result& result);
 /// Both meshes are always candidates: world boxes lose their precision if the meshes are moved far away together.
 /// Results of repeats are not reported again.
 /// @param meshes one or two
 /// @param poses_b one or more poses of the second mesh
 /// @param rows receives triangles, preceded by the pose or followed by the number of shared vertices; may be null
+/// @param drawing receives the meshes and pairs of the first pose; may be null
 /// @throws aabb::input_error if a pose cannot be searched, defect if a pair is found twice or missed.
 [[nodiscard]] mesh_result search_meshes(const mesh_query& query, const search_choice& choice,
                                         std::vector<aabb::mesh> meshes, const aabb::pose& pose_a, given_poses poses_b,
-                                        number_table* rows);
+                                        number_table* rows, hit_drawing* drawing = nullptr);
 
 /// The distances of two meshes, by pose of the second.
 struct distances_result {
