@@ -41,8 +41,8 @@ TEST_CASE_METHOD(nested_cubes, "collide says which mesh lies inside the other") 
     CHECK(inside["relation"] == "a_inside_b");
     CHECK(inside["inside"] == nlohmann::json::parse(R"([[0,0,"a_inside_b"]])"));
     CHECK(inside["surfaces"] == nlohmann::json::parse(R"([
-        {"components":1,"closed":1,"open_edges":0,"oriented":1,"inward":0,"intersects_itself":false},
-        {"components":1,"closed":1,"open_edges":0,"oriented":1,"inward":0,"intersects_itself":false}])"));
+        {"components":1,"closed":1,"open_edges":0,"oriented":1,"inward":0,"intersects_itself":null},
+        {"components":1,"closed":1,"open_edges":0,"oriented":1,"inward":0,"intersects_itself":null}])"));
     CHECK(inside["relation_ms"] > 0);
     CHECK(relation({large, small})["relation"] == "b_inside_a");
     CHECK(relation({small, large, "--count"})["relation"] == "a_inside_b");
@@ -99,7 +99,7 @@ TEST_CASE_METHOD(nested_cubes, "collide --relation says how components lie that 
 TEST_CASE_METHOD(nested_cubes, "collide says which surfaces are not closed, face inward or intersect themselves") {
     const auto lines = [&](const std::string& a, const std::string& b) {
         const std::string text = run_well({"collide", a, b}).out;
-        check_narrow(text);
+        check_narrow(text.substr(text.find('\n')));  // without the names of the files
         return text;
     };
     CHECK(holds(lines(small, open),
@@ -115,15 +115,16 @@ TEST_CASE_METHOD(nested_cubes, "collide says which surfaces are not closed, face
     // A hollow: a component that faces inward is none to worry about, but it is named.
     const std::string hollow = folder.write("hollow.off", cubes({{-4, 4}, {2, -2}}));
     CHECK(holds(lines(small, hollow),
-                "\nneither lies inside the other, but A has components in a hollow of B\n1 of 2 components of B faces "
+                "\nneither lies inside the other, but A has components in a cavity of B\n1 of 2 components of B faces "
                 "inward\n"));
     const auto in_hollow = json_of({"collide", small, hollow, "--json"});
     CHECK(in_hollow["relation"] == "apart");
     CHECK(in_hollow["inside"] == nlohmann::json::parse(R"([[0,0,"a_inside_b"],[0,1,"a_inside_b"]])"));
     const std::string crossing = folder.write("crossing.off", cubes({{-9, 9}, {-8, 10}}));
-    CHECK(holds(lines(small, crossing),
-                "\nB touches or crosses itself: its inside is what an odd number of layers "
-                "enclose\n"));
+    CHECK_FALSE(holds(lines(small, crossing), "itself"));
+    CHECK(holds(run_well({"collide", small, crossing, "--relation"}).out,
+                "\nB touches or crosses itself: inside is what an odd number of components enclose\n"));
+    CHECK(json_of({"collide", small, crossing, "--relation", "--json"})["surfaces"][1]["intersects_itself"] == true);
     const std::string several = folder.write("several.off", cubes({{-1, 1}, {5, 6}}));
     CHECK(holds(lines(several, large), "\ncomponents of one lie inside the other, but not all\n"));
     CHECK(json_of({"collide", several, large, "--json"})["relation"] == "partly_inside");

@@ -368,6 +368,72 @@ TEST_CASE("a ray through a triangle without area crosses nothing") {
         }
 }
 
+TEST_CASE("a ray whose start is known by floats decides as one without them, near edges too") {
+    std::array<std::size_t, 4> counts{};
+    REQUIRE(rc::check([&] {
+        // A start and two triangles, flat or not, near the origin or far off, with coordinates that are no floats.
+        const double offset = *rc::gen::element(0.0, 0.1, 1e3, 1e7);
+        const bool on_lattice = *rc::gen::arbitrary<bool>();
+        const auto coordinate = [&] {
+            return offset + (on_lattice ? *rc::gen::inRange(-2, 3) / 8.0 : uniform(-0.2, 0.2));
+        };
+        const auto any_point = [&] { return vec3d{coordinate(), coordinate(), coordinate()}; };
+        mesh m{{}, {{0, 1, 2}, {3, 4, 5}}};
+        std::vector<vec3d> corners(6);
+        for (vec3d& corner : corners) corner = any_point();
+        set_vertices(m, corners);
+        mesh other{{}, {{0, 0, 0}}};
+        const vec3d start = any_point();
+        set_vertices(other, {start});
+        const pose at = *rc::gen::arbitrary<bool>() ? pose{} : any_turned(any_vector(10));
+        // The target lies beyond a point of an edge, beside which it may be by a little.
+        const double along = *rc::gen::inRange(0, 5) / 4.0, beyond = *rc::gen::element(1.0, 2.0, 1000.0);
+        const double little = *rc::gen::element(0.0, 1e-17, 1e-14, 1e-9, 1e-4);
+        vec3d target{};
+        double distance = 0;
+        for (int k = 0; k < 3; ++k) {
+            const double on_edge = corners[0][k] + along * (corners[1][k] - corners[0][k]);
+            distance = std::max(distance, std::abs(on_edge - start[k]));
+            target[k] = start[k] + beyond * (on_edge - start[k]) + uniform(-1, 1) * little;
+        }
+        if (target == start) return;
+        aabb::parity_ray exact(m, at, bounds_of(m), start, at), filtered = exact;
+        const aabb::relative_pose to_m(at, at, bounds_of(other), m.frame, other.frame);
+        filtered.set_image(to_m(other.vertices[0]), to_m.image_error());
+        exact.aim_at(target);
+        filtered.aim_at(target);
+        for (const std::uint32_t t : {0U, 1U}) {
+            const ray_crossing crossing = exact.crossing(t);
+            ++counts[static_cast<std::size_t>(crossing)];
+            RC_ASSERT(filtered.crossing(t) == crossing);
+            // Boxes count up to the target only, which here is farther away than any triangle.
+            if (beyond > 2 && distance > 0.01 && crossing == ray_crossing::crosses)
+                RC_ASSERT(filtered.may_meet(bounds_of(m.triangle(t))));
+        }
+    }));
+    CHECK(counts[static_cast<std::size_t>(ray_crossing::none)] > 20);
+    CHECK(counts[static_cast<std::size_t>(ray_crossing::crosses)] > 5);
+    CHECK(counts[static_cast<std::size_t>(ray_crossing::unclear)] > 5);
+}
+
+TEST_CASE("a ray from the plane of a huge face is aimed out of that plane") {
+    // Half as wide as the greatest numbers, so that nothing is known by floats.
+    const mesh cube =
+        in_doubles(aabb::unit_cube(), [](const vec3d& v) -> vec3d { return {0x1p1001 * v[0] - 0x1p1000, v[1], v[2]}; });
+    for (const double x : {0x1p1000, -0x1p1000}) {
+        aabb::parity_ray ray(cube, {}, bounds_of(cube), {x, 5, 6}, {});
+        int clear = 0;
+        for (std::uint64_t attempt = 0; attempt < 9; ++attempt) {
+            ray.aim(attempt);
+            bool is_clear = true;
+            for (std::uint32_t t = 0; t < cube.triangle_count(); ++t)
+                is_clear &= ray.crossing(t) != ray_crossing::unclear;
+            clear += static_cast<int>(is_clear);
+        }
+        CHECK(clear >= 8);
+    }
+}
+
 TEST_CASE("meshes lie apart, one inside the other, in a hollow, or partly inside") {
     const mesh cube = scaled(aabb::unit_cube(), 4, {-2, -2, -2}), ball = aabb::sphere(8);
     CHECK(relation(ball, cube) == solid_relation::a_inside_b);

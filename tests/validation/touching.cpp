@@ -186,6 +186,39 @@ TEST_CASE("solids that meet in points only touch from outside or from inside") {
     CHECK(relation(scaled(aabb::unit_cube(), 1, {3, 3, 3}), cube) == contact_relation::a_inside_b);
 }
 
+TEST_CASE("solids with a common edge lie as their wedges do, at any angles") {
+    /// A tetrahedron with an edge on the z-axis, from one angle in degrees to another, of a size that meets no other.
+    const auto wedge = [](double from, double to, double size) {
+        mesh m;
+        const auto at = [&](double degrees) {
+            const double angle = degrees * std::numbers::pi / 180;
+            return vec3f{static_cast<float>(size * std::cos(angle)), static_cast<float>(size * std::sin(angle)), 2};
+        };
+        m.vertices = {{0, 0, 0}, {0, 0, 4}, at(from), at(to)};
+        m.triangles = {{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}};
+        return m;
+    };
+    const auto relation = [&](const mesh& a, const mesh& b) {
+        const auto found = contacts(a, {}, b, {});
+        REQUIRE(found.size() == 1);
+        return found[0].relation;
+    };
+    for (int turn = 0; turn < 360; turn += 15) {
+        CAPTURE(turn);
+        const auto of = [&](double from, double to, double size) { return wedge(turn + from, turn + to, size); };
+        CHECK(relation(of(20, 50, 1), of(10, 70, 8)) == contact_relation::a_inside_b);
+        CHECK(relation(of(10, 70, 8), of(20, 50, 1)) == contact_relation::b_inside_a);
+        CHECK(relation(of(10, 170, 8), of(20, 50, 0.1)) == contact_relation::b_inside_a);
+        CHECK(relation(of(20, 50, 1), of(60, 90, 8)) == contact_relation::touching);
+        CHECK(relation(of(60, 90, 8), of(20, 50, 1)) == contact_relation::touching);
+        CHECK(relation(of(20, 50, 1), of(100, 250, 8)) == contact_relation::touching);
+        CHECK(relation(of(20, 50, 1), of(40, 90, 8)) == contact_relation::crossing);
+        CHECK(relation(of(20, 50, 1), of(-60, 40, 8)) == contact_relation::crossing);
+        CHECK(relation(of(20, 50, 1), of(20, 80, 8)) == contact_relation::a_inside_b);
+        CHECK(relation(of(20, 50, 1), of(50, 80, 8)) == contact_relation::touching);
+    }
+}
+
 TEST_CASE("meshes that are no manifolds, or intersect themselves, cross or are undecided") {
     const mesh cube = scaled(aabb::unit_cube(), 4, {0, 0, 0});
     mesh open = scaled(aabb::unit_cube(), 1, {4, 0, 0});
@@ -193,6 +226,11 @@ TEST_CASE("meshes that are no manifolds, or intersect themselves, cross or are u
     CHECK(contacts(open, {}, cube, {}) == std::vector<aabb::component_contact>{{0, 0, contact_relation::undecided}});
     open = scaled(open, 1, {-0.5F, 0.5F, 0.5F});
     CHECK(contacts(open, {}, cube, {}) == std::vector<aabb::component_contact>{{0, 0, contact_relation::crossing}});
+    // Two cubes that share an edge, of four triangles.
+    mesh chess = scaled(aabb::unit_cube(), 1, {4, 0, 0});
+    for (const mesh other = scaled(aabb::unit_cube(), 1, {5, 1, 0}); const auto& [p, q, r] : other.triangles)
+        add_triangle(chess, other.vertices[p], other.vertices[q], other.vertices[r]);
+    CHECK(contacts(chess, {}, cube, {}) == std::vector<aabb::component_contact>{{0, 0, contact_relation::undecided}});
     const mesh beside_cube = scaled(aabb::unit_cube(), 1, {4, 0, 0});
     const solid a(beside_cube, aabb::median_build{}), b(cube, aabb::median_build{});
     const auto stage = aabb::compose_local_detection({}, aabb::instrumentation::none);
