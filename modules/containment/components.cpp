@@ -27,12 +27,6 @@ private:
     std::vector<std::uint32_t> parent_;
 };
 
-/// An edge of a triangle, between two positions.
-struct directed_edge {
-    std::uint32_t low, high;
-    bool goes_up;  ///< from `low` to `high`
-};
-
 /// A sum of products of three doubles, exactly, in two's complement. In units of 2^-3222, the cube of the least double,
 /// a product has 6294 bits at most, so that 6400 bits hold more terms than there can be.
 class exact_sum {
@@ -130,23 +124,31 @@ int enclosed_volume_sign(const mesh& m, std::span<const std::uint32_t> triangles
 /// @param part_of by vertex that stands for a position, its component
 void count_open_edges(const mesh& m, std::span<const std::uint32_t> first, std::span<const std::uint32_t> part_of,
                       std::vector<surface_component>& parts) {
-    std::vector<directed_edge> edges;
-    edges.reserve(3 * m.triangles.size());
-    for (const auto& corners : m.triangles)
-        for (std::size_t i = 0; i < 3; ++i) {
-            const std::uint32_t from = first[corners[i]], to = first[corners[(i + 1) % 3]];
-            if (from != to) edges.push_back({std::min(from, to), std::max(from, to), from < to});
-        }
-    const auto ends = [](const directed_edge& e) { return std::uint64_t{e.low} << 32U | e.high; };
-    std::ranges::sort(edges, {}, ends);
+    // The edges of each lower end, by counting: the higher end, and whether the triangle passes the edge towards it.
+    std::vector<std::size_t> begins(m.vertices.size() + 2);
+    const auto for_each_edge = [&](const auto& take) {
+        for (const auto& corners : m.triangles)
+            for (std::size_t i = 0; i < 3; ++i) {
+                const std::uint32_t from = first[corners[i]], to = first[corners[(i + 1) % 3]];
+                if (from != to)
+                    take(std::min(from, to), std::uint64_t{std::max(from, to)} << 1U | (from < to ? 1U : 0U));
+            }
+    };
+    for_each_edge([&](std::uint32_t low, std::uint64_t) { ++begins[low + 2U]; });
+    for (std::size_t v = 2; v < begins.size(); ++v) begins[v] += begins[v - 1];
+    std::vector<std::uint64_t> edges(begins.back());
+    for_each_edge([&](std::uint32_t low, std::uint64_t edge) { edges[begins[low + 1U]++] = edge; });
     for (surface_component& part : parts) part.is_oriented = true;
-    for (std::size_t i = 0; i < edges.size();) {
-        surface_component& part = parts[part_of[edges[i].low]];
-        std::size_t up = 0, down = 0;
-        for (const std::uint64_t edge = ends(edges[i]); i < edges.size() && ends(edges[i]) == edge; ++i)
-            ++(edges[i].goes_up ? up : down);
-        part.open_edges += (up + down) % 2;
-        part.is_oriented &= up == down;
+    for (std::uint32_t low = 0; low < m.vertices.size(); ++low) {
+        const std::span<std::uint64_t> at_low = std::span(edges).subspan(begins[low], begins[low + 1U] - begins[low]);
+        std::ranges::sort(at_low);
+        for (std::size_t i = 0; i < at_low.size();) {
+            std::size_t up = 0, down = 0;
+            for (const std::uint64_t high = at_low[i] >> 1U; i < at_low.size() && at_low[i] >> 1U == high; ++i)
+                ++((at_low[i] & 1U) != 0 ? up : down);
+            parts[part_of[low]].open_edges += (up + down) % 2;
+            parts[part_of[low]].is_oriented &= up == down;
+        }
     }
 }
 
@@ -157,19 +159,22 @@ std::vector<std::uint32_t> first_at_position(const mesh& m) {
     std::vector<bool> is_used(m.vertices.size());
     for (const auto& corners : m.triangles)
         for (const std::uint32_t v : corners) is_used[v] = true;
-    std::vector<std::uint32_t> by_position;
+    struct placed_vertex {
+        vec3d at;
+        std::uint32_t number;
+    };
+    std::vector<placed_vertex> by_position;
     for (std::uint32_t v = 0; v < m.vertices.size(); ++v)
-        if (is_used[v]) by_position.push_back(v);
-    std::ranges::sort(by_position, [&](std::uint32_t p, std::uint32_t q) {
-        const vec3d at_p = m.given_vertex(p), at_q = m.given_vertex(q);
+        if (is_used[v]) by_position.push_back({m.given_vertex(v), v});
+    std::ranges::sort(by_position, [](const placed_vertex& p, const placed_vertex& q) {
         for (int k = 0; k < 3; ++k)
-            if (at_p[k] != at_q[k]) return at_p[k] < at_q[k];
-        return p < q;
+            if (p.at[k] != q.at[k]) return p.at[k] < q.at[k];
+        return p.number < q.number;
     });
     for (std::size_t i = 0; i < by_position.size(); ++i) {
-        const std::uint32_t v = by_position[i];
-        const bool is_new = i == 0 || m.given_vertex(v) != m.given_vertex(by_position[i - 1]);
-        first[v] = is_new ? v : first[by_position[i - 1]];
+        const auto& [at, number] = by_position[i];
+        const bool is_new = i == 0 || at != by_position[i - 1].at;
+        first[number] = is_new ? number : first[by_position[i - 1].number];
     }
     return first;
 }
