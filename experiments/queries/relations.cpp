@@ -10,7 +10,7 @@ namespace aabblab {
 
 namespace {
 
-surface_summary summary_of(const aabb::enclosure<aabb::implicit_tree>& mesh, bool intersects_itself) {
+surface_summary summary_of(const aabb::enclosure<aabb::implicit_tree>& mesh, std::optional<bool> intersects_itself) {
     surface_summary summary;
     summary.intersects_itself = intersects_itself;
     for (const aabb::surface_component& part : mesh.parts()) {
@@ -36,16 +36,16 @@ void add_sentences(const surface_summary& surface, const std::string& name, std:
                             counted(surface.open_edges, "edge") + (surface.open_edges == 1 ? " belongs" : " belong") +
                             " to an odd number of triangles");
     if (surface.inward > 0) sentences.push_back(subject(surface.inward, "faces inward", "face inward"));
-    if (surface.intersects_itself)
-        sentences.push_back(name + " touches or crosses itself: its inside is what an odd number of layers enclose");
+    if (surface.intersects_itself.value_or(false))
+        sentences.push_back(name + " touches or crosses itself: inside is what an odd number of components enclose");
 }
 
 std::string sentence_about(const mesh_relation& lie) {
     switch (*lie.solids) {
         case aabb::solid_relation::apart:
             // Inside an even number of components.
-            if (!lie.a_inside_b.empty()) return "neither lies inside the other, but A has components in a hollow of B";
-            if (!lie.b_inside_a.empty()) return "neither lies inside the other, but B has components in a hollow of A";
+            if (!lie.a_inside_b.empty()) return "neither lies inside the other, but A has components in a cavity of B";
+            if (!lie.b_inside_a.empty()) return "neither lies inside the other, but B has components in a cavity of A";
             return "neither lies inside the other";
         case aabb::solid_relation::a_inside_b: return "A lies inside B";
         case aabb::solid_relation::b_inside_a: return "B lies inside A";
@@ -59,8 +59,8 @@ std::string sentence_about(const mesh_relation& lie) {
 std::string text_of(aabb::contact_relation contact) {
     switch (contact) {
         case aabb::contact_relation::touching: return "touching from outside";
-        case aabb::contact_relation::a_inside_b: return "touching, A inside B";
-        case aabb::contact_relation::b_inside_a: return "touching, B inside A";
+        case aabb::contact_relation::a_inside_b: return "that of A touches that of B from inside";
+        case aabb::contact_relation::b_inside_a: return "that of B touches that of A from inside";
         case aabb::contact_relation::equal: return "equal";
         case aabb::contact_relation::crossing: return "crossing";
         case aabb::contact_relation::undecided: return "meeting, but whether they cross is not decided";
@@ -74,6 +74,7 @@ struct relation_search::state {
     const aabb::mesh& a;
     const aabb::mesh& b;
     self_query intersects_itself;
+    std::optional<std::array<aabb::box, 2>> boxes;  ///< of the floats of A and B, computed once
     /// Of A and B, once a question needs them.
     std::optional<aabb::enclosure<aabb::implicit_tree>> solid_a, solid_b;
     std::vector<surface_summary> surfaces;
@@ -87,7 +88,8 @@ struct relation_search::state {
         for (std::uint32_t mesh = 0; mesh < 2; ++mesh) {
             const auto& solid = mesh == 0 ? *solid_a : *solid_b;
             const bool encloses = std::ranges::any_of(solid.parts(), &aabb::surface_component::is_closed);
-            surfaces.push_back(summary_of(solid, encloses && intersects_itself(mesh)));
+            surfaces.push_back(summary_of(
+                solid, intersects_itself ? std::optional(encloses && intersects_itself(mesh)) : std::nullopt));
         }
     }
 };
@@ -99,8 +101,9 @@ relation_search::~relation_search() = default;
 mesh_relation relation_search::at(const aabb::pose& pose_a, const aabb::pose& pose_b) {
     const wall_stopwatch deciding;
     mesh_relation lie{.solids = aabb::solid_relation::apart, .a_inside_b = {}, .b_inside_a = {}, .contacts = {}};
-    const aabb::box box_a = world_bounds(bounds_of(state_->a), pose_a, state_->a.frame);
-    const aabb::box box_b = world_bounds(bounds_of(state_->b), pose_b, state_->b.frame);
+    if (!state_->boxes) state_->boxes = {bounds_of(state_->a), bounds_of(state_->b)};
+    const aabb::box box_a = world_bounds((*state_->boxes)[0], pose_a, state_->a.frame);
+    const aabb::box box_b = world_bounds((*state_->boxes)[1], pose_b, state_->b.frame);
     // What lies inside lies inside the box.
     if (overlaps(box_a, box_b)) {
         state_->prepare();
@@ -120,7 +123,9 @@ mesh_relation relation_search::at(const aabb::pose& pose_a, const aabb::pose& po
     const auto &a = *state_->solid_a, &b = *state_->solid_b;
     mesh_relation lie;
     lie.contacts = contacts_of(a, pose_a, b, pose_b, hits,
-                               std::ranges::any_of(state_->surfaces, &surface_summary::intersects_itself));
+                               std::ranges::any_of(state_->surfaces, [](const surface_summary& surface) {
+                                   return surface.intersects_itself.value_or(false);
+                               }));
     std::vector<aabb::index_pair> meeting, meeting_of_b;
     for (const aabb::component_contact& contact : lie.contacts) {
         meeting.push_back({contact.a, contact.b});
