@@ -116,7 +116,11 @@ search_method method_of(const search_choice& choice, const aabb::scene_traits& t
             method.run_stages.local =
                 by_engine ? aabb::make_mesh_engine(*choice.engine) : aabb::compose_local_detection(c, uncounted);
     }
-    if (choice.within && method.run_stages.global) search_within(method.run_stages, *choice.within);
+    if (choice.within && method.run_stages.global) {
+        search_within(method.run_stages, *choice.within);
+        // What the filter keeps from the search is found where boxes overlap, which is too near.
+        method.filtered = aabb::filtering::late;
+    }
     return method;
 }
 
@@ -131,7 +135,7 @@ frames_result search_frames(scene_frames& scene, search_method& method, number_t
     result.objects = scene.objects();
     std::optional<stage_runner> searcher;
     const wall_stopwatch building;
-    searcher.emplace(std::move(method.run_stages), scene);
+    searcher.emplace(std::move(method.run_stages), scene, method.filtered);
     result.build_ms = building.ms();
     progress shown("frames searched", scene.frames());
     tally totals(meshes);

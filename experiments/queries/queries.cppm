@@ -1,9 +1,10 @@
 /// Queries of one or both stages, in the frames of a scene or of two meshes at given poses, with digest, times, rows.
 export module aabblab.queries;
 
+import aabb.collision_filter;
+import aabb.containment;
 import aabb.distance;
 import aabb.distance_stage;
-import aabb.containment;
 import aabb.pipeline;
 import aabb.registry;
 import aabb.selection;
@@ -82,6 +83,7 @@ struct search_method {
     std::string name;
     bool exact = true;
     stages run_stages;
+    aabb::filtering filtered = aabb::filtering::early;  ///< by the scene's collision filter
 
     /// "cgal", "fcl (inexact)".
     [[nodiscard]] std::string text() const { return exact ? name : name + " (inexact)"; }
@@ -151,7 +153,7 @@ struct surface_summary {
     std::uint32_t components = 0;
     std::uint32_t closed = 0, oriented = 0, inward = 0;  ///< of the components
     std::uint64_t open_edges = 0;                        ///< edges of an odd number of triangles
-    bool intersects_itself = false;                      ///< only of a mesh with a closed component
+    std::optional<bool> intersects_itself = {};          ///< if asked, of a mesh with a closed component
 };
 
 /// How two meshes lie at a pose.
@@ -165,7 +167,7 @@ struct mesh_relation {
 /// pose, trees and components are prepared once.
 class relation_search {
 public:
-    /// Whether mesh 0 or 1 intersects itself.
+    /// Whether mesh 0 or 1 intersects itself; empty unless asked, since it takes longer than all else.
     using self_query = std::function<bool(std::uint32_t mesh)>;
     /// @param a,b must outlive this object
     relation_search(const aabb::mesh& a, const aabb::mesh& b, self_query intersects_itself);

@@ -154,7 +154,7 @@ TEST_CASE_METHOD(in_folder, "A missing or malformed scene file is rejected with 
     const std::string still = "0 0 1 0 0 0 0 1 0 0 0 0 1 0\n";
     CHECK(motion(still, "") == "test.toml:2: motion needs at least one mesh");
     CHECK(motion("x", "meshes = [\"icosphere\"]\n").starts_with("test.toml:4: " + folder.path().string()));
-    CHECK(holds(motion("x", "meshes = [\"icosphere\"]\n"), "m.txt:1: expected the number of a frame"));
+    CHECK(holds(motion("x", "meshes = [\"icosphere\"]\n"), "m.txt:1: the header lacks a column of frame, object"));
     CHECK(holds(motion(still, "meshes = [\"icosphere\", \"icosphere\"]\n"), "moves 1 objects, but there are 2 meshes"));
     CHECK(motion(still, "meshes = [\"icosphere\"]\n") == "accepted");
 }
