@@ -1,10 +1,9 @@
 #include "command_parser.hpp"
+#include "composing.hpp"
 
-import aabb.policy;
 import aabblab.checking;
 import aabblab.files;
 import aabblab.inputs;
-import aabblab.queries;
 import aabblab.stopwatch;
 import aabblab.trials;
 
@@ -23,10 +22,6 @@ struct check_request {
     [[nodiscard]] bool has_poses() const { return poses[0] || poses[1] || poses_of_b; }
 };
 
-/// The values of --self, as for `collide`; a flag without a value is "true".
-const std::map<std::string, self_pairs> self_choices{
-    {"true", self_pairs::intersecting}, {"all", self_pairs::all}, {"no-adjacent", self_pairs::no_adjacent}};
-
 /// The names of the scene: a recording, or one or two meshes.
 std::vector<std::string> scene_of(const check_request& request) {
     std::vector<std::string> scene = request.inputs;
@@ -43,9 +38,7 @@ void reject_contradictions(const check_request& request) {
     const auto reject_if = [](bool condition, const std::string& sentence) {
         if (condition) throw aabb::input_error(sentence);
     };
-    if (!request.self.empty() && !self_choices.contains(request.self))
-        throw aabb::input_error(
-            aabb::unknown_name("value of --self", request.self, std::vector<std::string>{"all", "no-adjacent"}));
+    if (!request.self.empty()) (void)self_pairs_of(request.self);
     const std::size_t scenes = request.inputs.size() - (request.command ? 0 : 1);
     reject_if(scenes == 0, "check: expected a list of pairs after the scene, or --command");
     reject_if(scenes > 2, fmt::format("check: expected a recording or two meshes{}, found {} files",
@@ -117,7 +110,7 @@ int check_meshes(const check_request& request, const std::vector<std::string>& s
     mesh_check meshes{.meshes = {}, .pose_a = pose_of(request.poses[0], "--pose-a")};
     meshes.poses_b = {{pose_of(request.poses[1], "--pose-b")}, /*file=*/{}, /*lines=*/{}};
     if (request.poses_of_b) meshes.poses_b = read_poses(*request.poses_of_b);
-    if (!request.self.empty()) meshes.self = self_choices.at(request.self);
+    if (!request.self.empty()) meshes.self = self_pairs_of(request.self);
     meshes.between = scene.front() + " against " + (scene.size() == 2 ? scene.back() : "itself");
     meshes.meshes = read_meshes(scene);
     pair_list list =

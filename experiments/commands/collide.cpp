@@ -17,13 +17,6 @@ namespace aabblab {
 
 namespace {
 
-/// The values of --self, with their earlier names; a flag without a value is "true".
-const std::map<std::string, self_pairs> self_choices{{"true", self_pairs::intersecting},
-                                                     {"all", self_pairs::all},
-                                                     {"together", self_pairs::all},
-                                                     {"no-adjacent", self_pairs::no_adjacent},
-                                                     {"apart", self_pairs::no_adjacent}};
-
 struct collide_request {
     std::string a;
     std::optional<std::string> b;
@@ -32,7 +25,7 @@ struct collide_request {
     std::optional<std::string> out, draw, poses_of_b;
     std::size_t repeats = 1;
     std::optional<double> within;
-    std::string self;  ///< a key of `self_choices`; empty without --self
+    std::string self;  ///< a value of --self; empty without it
     bool touching = true, first = false, count = false, geometry = false, exit_code = false, json = false;
     bool distance = false, relation = false;
 
@@ -41,7 +34,7 @@ struct collide_request {
     [[nodiscard]] mesh_query query() const {
         const query_kind ask = count ? query_kind::count : first ? query_kind::first : query_kind::pairs;
         return {.ask = ask,
-                .self = self.empty() ? std::nullopt : std::optional(self_choices.at(self)),
+                .self = self.empty() ? std::nullopt : std::optional(self_pairs_of(self)),
                 .hits = {.touching = touching, .geometry = geometry},
                 .relations = relation,
                 .by_pose = poses_of_b.has_value(),
@@ -186,9 +179,7 @@ void reject_contradictions(const collide_request& request) {
     if (request.self.empty()) {
         reject_if(!request.b, "collide: expected B, the other mesh, or --self");
     } else {
-        const std::vector<std::string> names{"all", "no-adjacent"};
-        if (!self_choices.contains(request.self))
-            throw aabb::input_error(aabb::unknown_name("value of --self", request.self, names));
+        (void)self_pairs_of(request.self);
         reject_if(request.b.has_value(), "--self takes one mesh, so give no second one");
         reject_if(request.poses[0] || request.poses[1] || request.poses_of_b,
                   "--self finds self-intersections, which no pose changes; omit the poses");

@@ -93,6 +93,18 @@ std::string text_of_within(const std::optional<double>& distance) {
     return distance ? fmt::format(" within {}", *distance) : "";
 }
 
+self_pairs self_pairs_of(const std::string& value) {
+    // Two have earlier names.
+    const std::map<std::string, self_pairs> choices{{"true", self_pairs::intersecting},
+                                                    {"all", self_pairs::all},
+                                                    {"together", self_pairs::all},
+                                                    {"no-adjacent", self_pairs::no_adjacent},
+                                                    {"apart", self_pairs::no_adjacent}};
+    if (const auto choice = choices.find(value); choice != choices.end()) return choice->second;
+    throw aabb::input_error(
+        aabb::unknown_name("value of --self", value, std::vector<std::string>{"all", "no-adjacent"}));
+}
+
 void add_touching(const command_parser& command, bool* touching, const std::string& hits) {
     const auto take = [touching](const std::string& text) {
         if (text != "yes" && text != "no")

@@ -29,6 +29,10 @@ private:
 /// The numbers for which results on moving meshes are exact.
 inline constexpr const char* exact_for_meshes = "vertices and poses in double";
 
+/// The pairs that a value of --self asks for; a flag without a value is "true".
+/// @throws aabb::input_error on another value
+[[nodiscard]] self_pairs self_pairs_of(const std::string& value);
+
 /// The option --touching.
 /// @param hits "pairs" or "contacts", for the help
 void add_touching(const command_parser& command, bool* touching, const std::string& hits);

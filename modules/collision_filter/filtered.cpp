@@ -185,9 +185,9 @@ private:
     void append_searched_pairs(std::vector<index_pair>& pairs) {
         const std::size_t before = pairs.size();
         if (searches_) search_->search(pairs);
-        const std::size_t found = pairs.size();
+        const std::size_t searched = pairs.size();
         remove_left_out(pairs, before);
-        const std::size_t removed = found - pairs.size();
+        const std::size_t removed = searched - pairs.size();
         const std::size_t kept = pairs.size() - before;
         joins_next_ = when_ == filtering::early && filter_.has_sets() &&
                       removed > pairs_per_query * filter_.size_of_smaller_set() + pairs_per_result * kept;

@@ -27,7 +27,7 @@ struct odd_double {
 
 /// An exact integer by its sign and its magnitude, whose limbs are stored without leading zeros, so that small numbers
 /// take little time. Callers choose a capacity that holds every intermediate result.
-/// @tparam Capacity in limbs of 64 bits; of a sum one limb more than its terms have, of a product as many as both have
+/// @tparam Capacity in limbs of 64 bits: a sum takes one more than its longer term, a product those of both factors
 template <std::size_t Capacity>
 class exact_integer {
 public:

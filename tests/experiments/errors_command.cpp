@@ -413,7 +413,7 @@ TEST_CASE_METHOD(in_folder, "Pairs of a scene are timed several times, and count
     REQUIRE(points.size() == 1);
     CHECK(points[0].cpu_ns_low.has_value());
     CHECK(points[0].intersecting < points[0].count);
-    // As many as the narrow phase finds, up to the rounding of images to float.
+    // The number that the narrow phase finds, up to the rounding of images to float.
     run_well({"run", folder.write("run.toml", scene + "[measure]\nrepeats = 1\nmetrics = \"error\"\n"), "--out",
               folder / "out"});
     const auto contacts = static_cast<double>(aabblab::read_rows(folder / "out/results.csv").at(0).contacts.value());
