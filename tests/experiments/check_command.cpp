@@ -140,6 +140,40 @@ TEST_CASE_METHOD(in_folder, "check counts each kind of error, by class, with its
         CHECK(holds(text.out, part));
 }
 
+TEST_CASE_METHOD(in_folder, "check finds every wrong pair of random lists, wherever it stands") {
+    const checked_scene scene = scene_in(folder);
+    const std::set<std::array<std::int64_t, 3>> truth(scene.pairs.begin(), scene.pairs.end());
+    std::uint64_t state = 1;
+    const auto below = [&state](std::uint64_t most) {  // a linear congruential generator (Knuth)
+        state = state * 6364136223846793005U + 1442695040888963407U;
+        return static_cast<std::int64_t>((state >> 33U) % most);
+    };
+    for (int i = 0; i < 20; ++i) {
+        CAPTURE(i);
+        std::set<std::array<std::int64_t, 3>> list = truth;
+        std::erase_if(list, [&](const auto&) { return below(8) == 0; });
+        for (int added = 0; added < 40; ++added) {
+            const std::int64_t b = 1 + below(59);
+            list.insert({below(6), below(static_cast<std::uint64_t>(b)), b});
+        }
+        list.insert({i % 6, 58, 59});                                   // behind all others of a frame
+        std::map<std::int64_t, std::array<std::uint64_t, 2>> expected;  // by frame
+        for (const auto& row : truth) expected[row[0]][0] += !list.contains(row);
+        for (const auto& row : list) expected[row[0]][1] += !truth.contains(row);
+        auto frames = nlohmann::json::array();
+        for (const auto& [frame, wrong] : expected)
+            if (wrong[0] + wrong[1] > 0) frames.push_back({frame, wrong[0], wrong[1]});
+        const auto report =
+            checked({scene.recording, folder.write("list.csv", text_of(rows(list.begin(), list.end())))});
+        CHECK(report["frames"] == frames);
+        std::uint64_t classified = 0;
+        for (const auto& counts : report["classes"])
+            classified += counts[0].get<std::uint64_t>() + counts[1].get<std::uint64_t>();
+        CHECK(classified ==
+              report["false_negatives"].get<std::uint64_t>() + report["false_positives"].get<std::uint64_t>());
+    }
+}
+
 TEST_CASE_METHOD(in_folder, "check names what is wrong with a list as a whole") {
     const checked_scene scene = scene_in(folder);
     const auto pattern = [&](const std::function<void(rows&)>& damage) {
