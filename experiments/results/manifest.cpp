@@ -194,10 +194,15 @@ std::string manifest_text(const experiment_record& e, const std::string& date, c
         if (scene.seed) scenes.back()["seed"] = *scene.seed;
         if (digest != digests.end()) scenes.back()["digest"] = digest->second;
     }
+    // Without its folder, which says something only on the machine of the run.
+    const json config{{"file", std::filesystem::path(e.file).filename().string()},
+                      {"hash", e.hash},
+                      {"quick", e.quick},
+                      {"text", e.text}};
     json manifest{
         {"experiment", e.name},  {"date", date},
         {"build", build_json()}, {"machine", machine_json()},
-        {"costs", costs_json()}, {"config", {{"file", e.file}, {"hash", e.hash}, {"quick", e.quick}, {"text", e.text}}},
+        {"costs", costs_json()}, {"config", config},
         {"scenes", scenes},      {"notes", e.notes}};
     if (seal) {
         manifest["defaults"] = defaults_json(e.scenes, seal->candidates);

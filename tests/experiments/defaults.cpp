@@ -11,6 +11,7 @@ TEST_CASE_METHOD(in_folder, "A finished run states the defaults that completed i
                  "[[compose]]\nsort = [{ name = \"shell\", gaps = \"shell\" }, \"shell\"]\n[measure]\nrepeats = 2\n");
     run_well({"run", folder / "small.toml", "--out", folder / "run"});
     auto manifest = nlohmann::ordered_json::parse(bytes_of_file(folder / "run/manifest.json"));
+    CHECK(manifest["config"]["file"] == "small.toml");
     CHECK(manifest["defaults"]["strategies"]["sort"]["shell"]["gaps"] == "ciura");
     CHECK(manifest["defaults"]["strategies"]["sweep"]["one_axis"]["axis"] == "auto");
     CHECK_FALSE(manifest["defaults"]["strategies"].contains("tree"));  // a scene of boxes
