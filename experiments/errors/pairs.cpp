@@ -101,17 +101,15 @@ std::vector<series> lines_of(const std::vector<tested_method>& methods) {
 /// A diagram without lines yet.
 figure diagram(const std::string& name, const std::string& sets, std::span<const error_point> points) {
     const bool has_processor_time = points.front().cpu_ns.has_value();
-    return {
-        .name = name,
-        .caption = fmt::format(
-            "Share of wrong results over the {} time per pair, {}: each method over its "
-            "parameter, whose value is beside its point where there is room. Bars are 95 % intervals. A line joins the "
-            "Pareto front. A method without errors is drawn on the line of one wrong result in "
-            "N pairs; by the rule of three, the share of wrong results among generated pairs is "
-            "then below 3/N with 95 % confidence.",
-            has_processor_time ? "processor" : "wall", sets),
-        .x = {fmt::format("{} time per pair (ns)", has_processor_time ? "processor" : "wall"), true},
-        .y = {"share of wrong results", /*logarithmic=*/true}};
+    return {.name = name,
+            .caption = fmt::format("Share of wrong results over the {} time per pair, {}: each method over its "
+                                   "parameter, whose value is at each point. Bars are 95 % intervals. A line joins the "
+                                   "Pareto front. A method without errors is drawn on the line of one wrong result in "
+                                   "N pairs; by the rule of three, the share of wrong results among generated pairs is "
+                                   "then below 3/N with 95 % confidence.",
+                                   has_processor_time ? "processor" : "wall", sets),
+            .x = {fmt::format("{} time per pair (ns)", has_processor_time ? "processor" : "wall"), true},
+            .y = {"share of wrong results", /*logarithmic=*/true}};
 }
 
 /// Sets in which any method errs: others would put all points on one level.

@@ -3,6 +3,7 @@ module aabblab.figures:arrangement;
 
 import aabb.std;
 import :drawing;
+import :point_labels;
 import :sheet;
 
 namespace aabblab {
@@ -32,13 +33,18 @@ struct arrangement {
     };
     std::vector<sample> samples;
     std::vector<words> texts;  ///< all except tick labels
+
+    /// A line from a point to its label that is not beside it, in the colour of the series.
+    struct leader {
+        segment line;
+        std::size_t appearance;
+    };
+    std::vector<leader> leaders;
 };
 
 // In ems.
-inline constexpr double line_height = 1.25;
 inline constexpr double tick_room = 0.9;  ///< length of a tick with the gap to its label
 constexpr double figure_width = 36;       // about 10 pixels per em on a phone of 400 pixels
-constexpr double character_width = 0.6;   // of the widest common sans-serif fonts
 constexpr double legend_row = 1.4;
 constexpr double legend_sample = 6;    // of a line in the legend, including gaps
 constexpr double end_sign_room = 1.6;  // of the sign before a label at a line's end, including gaps
@@ -60,10 +66,6 @@ constexpr double gap = 0.6;
 // Maximum lengths of lines in labels, in characters.
 constexpr std::size_t longest_name = 54;
 constexpr std::size_t end_label_length = 18;
-
-double width_of(const std::string& line) {
-    return character_width * static_cast<double>(characters(line));
-}
 
 double width_of(const std::vector<std::string>& lines) {
     double widest = 0;
@@ -113,15 +115,6 @@ struct legend {
     [[nodiscard]] double height() const { return rows == 0 ? 0 : legend_row * static_cast<double>(rows) + gap; }
 };
 
-/// The extent of a text in a plot.
-struct text_box {
-    double left, right, bottom, top;
-
-    [[nodiscard]] bool overlaps(const text_box& other) const {
-        return left < other.right && other.left < right && bottom < other.top && other.bottom < top;
-    }
-};
-
 /// The text beside the vertical line of a mark, like a flag at its pole; `begin` and `end` are its horizontal extent.
 struct flag {
     double line_x, begin, end;
@@ -159,7 +152,8 @@ public:
     explicit arranger(const drawing& d)
         : drawing_(d),
           panel_count_(d.panels.size()),
-          column_count_(std::min<std::size_t>(panel_count_, 2)),
+          has_point_labels_(has_point_labels(d)),
+          column_count_(std::min<std::size_t>(panel_count_, has_point_labels_ ? 1 : 2)),
           row_count_((panel_count_ + column_count_ - 1) / column_count_) {}
 
     /// Places all parts of the figure. Margins depend on labels, the plots on margins and the legend, and the places of
@@ -197,6 +191,12 @@ public:
     }
 
 private:
+    [[nodiscard]] static bool has_point_labels(const drawing& d) {
+        for (const shown_panel& panel : d.panels)
+            for (const shown_series& s : panel.lines)
+                if (std::ranges::any_of(s.points, [](const figure_point& p) { return !p.label.empty(); })) return true;
+        return false;
+    }
     [[nodiscard]] double plot_width() const {
         const auto count = static_cast<double>(column_count_);
         return (figure_width - left_margin_ - right_margin_ - column_gap_ * (count - 1)) / count;
@@ -208,7 +208,7 @@ private:
     /// Sets the height of the plots, which grows with names on the y axis, and the left margin for its labels.
     void place_left() {
         const auto [width, height] = extent_of_labels(drawing_.y, y_name_length);
-        plot_height_ = panel_count_ == 1 ? 17 : 10;
+        plot_height_ = panel_count_ == 1 || has_point_labels_ ? 17 : 10;
         if (drawing_.y.named)
             plot_height_ = std::max(plot_height_, (height + gap) * static_cast<double>(drawing_.y.ticks.size()));
         y_label_ = lines_of(drawing_.f.y.label, length_in(plot_height_ * static_cast<double>(row_count_) + 1.5));
@@ -461,42 +461,25 @@ private:
         }
     }
 
-    /// Adds the labels of a panel's points, each at the first of eight places around its point that lies in the plot
-    /// and covers neither another label nor any point. A label without such a place is left out.
+    /// Adds the labels of a panel's points, beside them or joined to them by lines.
     void add_point_labels(std::size_t panel) {
-        constexpr double size = 0.75;
-        constexpr double sign = 0.4;  // half the extent of a point's sign
-        constexpr double half_height = size * line_height / 2;
         const arrangement::box& plot = layout_.plots[panel];
-        std::vector<const figure_point*> labelled;
-        std::vector<text_box> taken;
-        const auto place_of = [&](const figure_point& p) {
-            return place{plot.left + drawing_.x.place(p.x) * (plot.right - plot.left),
-                         plot.bottom + drawing_.y.place(p.y) * (plot.top - plot.bottom)};
-        };
+        std::vector<place> points;
+        std::vector<point_label> labels;
         for (const shown_series& s : drawing_.panels[panel].lines)
             for (const figure_point& p : s.points) {
                 if (s.is(series_style::level)) continue;
-                if (!p.label.empty()) labelled.push_back(&p);
-                const auto [x, y] = place_of(p);
-                taken.push_back({x - sign, x + sign, y - sign, y + sign});
+                points.push_back({plot.left + drawing_.x.place(p.x) * (plot.right - plot.left),
+                                  plot.bottom + drawing_.y.place(p.y) * (plot.top - plot.bottom)});
+                if (!p.label.empty()) labels.push_back({&p.label, points.back(), s.appearance});
             }
-        for (const figure_point* p : labelled) {
-            const auto [x, y] = place_of(*p);
-            const double width = size * width_of(p->label);
-            for (const auto& [right, up] :
-                 {std::pair{1, 1}, {1, 0}, {1, -1}, {0, 1}, {0, -1}, {-1, 1}, {-1, 0}, {-1, -1}}) {
-                const double middle_x = x + right * (sign + width / 2 + 0.1);
-                const double middle_y = y + up * (half_height + (right == 0 ? sign : 0.1));
-                const text_box box{middle_x - width / 2, middle_x + width / 2, middle_y - half_height,
-                                   middle_y + half_height};
-                if (box.left < plot.left || box.right > plot.right || box.bottom < plot.bottom || box.top > plot.top ||
-                    std::ranges::any_of(taken, [&](const text_box& other) { return box.overlaps(other); }))
-                    continue;
-                layout_.texts.push_back({{middle_x, middle_y}, p->label, words::anchor::middle, {}, 0, size});
-                taken.push_back(box);
-                break;
-            }
+        label_room room({plot.left, plot.right, plot.bottom, plot.top}, labels);
+        for (const place& at : points) room.add_point(at);
+        const std::vector<placed_label> placed = room.placed();
+        for (std::size_t i = 0; i < labels.size(); ++i) {
+            const auto& [box, leader] = placed[i];
+            layout_.texts.push_back({box.middle(), *labels[i].text, words::anchor::middle, {}, 0, point_label::size});
+            if (leader) layout_.leaders.push_back({*leader, labels[i].appearance});
         }
     }
 
@@ -530,7 +513,9 @@ private:
 
     const drawing& drawing_;
     arrangement layout_{};
-    std::size_t panel_count_, column_count_, row_count_;
+    std::size_t panel_count_;
+    bool has_point_labels_;  // which need room: panels are below each other then, as high as single ones
+    std::size_t column_count_, row_count_;
     double left_margin_ = 0;
     double right_margin_ = 1.5;
     double column_gap_ = 0, plot_height_ = 0;

@@ -13,7 +13,7 @@ struct figure_point {
     double high = y;
     double x_low = x;  ///< the interval of x, drawn where no band is
     double x_high = x;
-    std::string label{};  ///< drawn beside the point if it fits there; the CSV file has all labels
+    std::string label{};  ///< drawn beside the point, or with a line to it
 };
 
 /// The style of a series. Quartiles and intervals are drawn only if low < high.

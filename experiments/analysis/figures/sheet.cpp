@@ -93,6 +93,8 @@ public:
             draw_frame();
         }
         if (drawing_.empty()) write({{middle_x(), middle_y()}, "no data", words::anchor::middle});
+        for (const auto& [line, appearance] : layout_.leaders)
+            stroke({{line.from, line.to}}, colour_of(appearance), thin);
         for (const words& text : layout_.texts) write(text);
         for (const arrangement::sample& s : layout_.samples) draw_sample(s);
         return std::move(sheet_);
