@@ -90,11 +90,11 @@ private:
         bodies_->move_to(state);
         detected_ = state;
         frames_.next();
-        const wall_stopwatch watch;
+        stopwatch watch;
         runner_.update();
         runner_.search();
         runner_.detect();
-        detection_ms_ += watch.ms();
+        detection_ms_ += watch.lap().cpu_ms;
         ++detections_;
         return runner_.sorted_contacts();
     }

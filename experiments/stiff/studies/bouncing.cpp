@@ -169,7 +169,8 @@ stiff_study bouncing_study() {
         "the energy of each integrator of order 2 in closed form, from where its steps cross the surface: central "
         "differences change it in a bounce by (dt·ω)² (p' - p'² - p + p²), with the shares p and p' of these steps in "
         "the floor, a random walk of (dt·ω)²/√90 a bounce. Published: SimBenchmark's bouncing test "
-        "(leggedrobotics/SimBenchmark, data/bouncing/sample.csv), simulators with impulses, over 20 s; the authors of "
+        "(leggedrobotics/SimBenchmark, data/bouncing/sample.csv of 19 July 2018), simulators with impulses, over 20 s; "
+        "the authors of "
         "RAI made the benchmark",
         &run_bouncing,
         {figure{.name = "bouncing_energy",

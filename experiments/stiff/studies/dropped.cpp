@@ -246,10 +246,11 @@ void compare_steps(const dropped_balls& balls, const stiff_setting& setting, sti
 std::vector<figure> figures() {
     std::vector<figure> list{figure{
         .name = "error_over_time",
-        .caption = "Error of a trajectory over the time of its collision detection: each integrator over its step "
+        .caption = "Error of a trajectory over the processor time of its collision detection, in one run: each "
+                   "integrator over its step "
                    "size, adaptive ones over their tolerance, and a stale Verlet list over the frames between its "
                    "rebuilds, with steps of 1 ms.",
-        .x = {"detection (ms)", /*logarithmic=*/true},
+        .x = {"detection (ms of processor time)", /*logarithmic=*/true},
         .y = {"greatest error of a position (diameters)", /*logarithmic=*/true}}};
     const figure_axis time{"time (s)"};
     for (const std::string size : sizes) {
@@ -297,7 +298,8 @@ stiff_study dropped_study() {
         "pressure on the surface of one ball inside the other separates them. The study shows how the step size "
         "and each method change the trajectory; lists with margin=0 may miss contacts by design",
         "the trajectory with exact contacts; energy errors that fall with the order of the integrator; SimBenchmark's "
-        "elastic 666 test (leggedrobotics/SimBenchmark, data/666-elastic/sample.csv), simulators with impulses; the "
+        "elastic 666 test (leggedrobotics/SimBenchmark, data/666-elastic/sample.csv of 12 August 2018), simulators "
+        "with impulses; the "
         "authors of RAI made the benchmark",
         &run_dropped,
         figures(),

@@ -6,6 +6,7 @@ module aabblab.stiff;
 import :incline;
 import :rules;
 import :simulation;
+import aabblab.fmt;
 
 namespace aabblab {
 
@@ -142,12 +143,32 @@ void measure_limits(const stiff_setting& setting, stiff_result& result) {
                               limit, 0.01));
 }
 
+/// Adds published results of SimBenchmark's rolling test: 25 balls on a box that is pushed for 4 s along an axis or
+/// along the diagonal of two. The error is the mean over time of the squared errors of the speeds of a ball and of the
+/// box.
+void add_published(stiff_result& result) {
+    struct published_error {
+        std::string_view simulator;
+        double along_axis, along_diagonal;  // m²/s²
+    };
+    for (const auto& [simulator, along_axis, along_diagonal] :
+         std::initializer_list<published_error>{{"RAI without ERP", 4.1268e-07, 4.13711e-07},
+                                                {"Bullet without ERP", 4.93482e-09, 5.70654e-09},
+                                                {"ODE without ERP", 7.66873e-09, 3.14497},
+                                                {"MuJoCo", 0.0092196, 0.00692691},
+                                                {"DART", 0.42589, 3.14497}})
+        for (const auto& [direction, error] : {std::pair("an axis", along_axis), {"the diagonal", along_diagonal}})
+            result.add(reported(fmt::format("published: {}, pushed along {}, 0.001 s", simulator, direction),
+                                "speed error, RMS (m/s)", std::sqrt(error)));
+}
+
 }  // namespace
 
 void run_rolling(const stiff_setting& setting, stiff_result& result) {
     measure_slide_to_roll(setting, result);
     measure_incline(setting, result);
     measure_limits(setting, result);
+    add_published(result);
 }
 
 stiff_study rolling_study() {
@@ -159,7 +180,10 @@ stiff_study rolling_study() {
             "closed forms for a solid ball: t* = 2v₀/(7μg), x* = 12v₀²/(49μg), v* = 5/7 v₀, 2/7 of the energy lost; it "
             "rolls iff tan θ <= 3.5 μ; with the linear law it creeps by v_s tan θ/(3.5 μ), and explicit steps are "
             "stable below 2 m v_s/(μN), with the effective mass m = 2/7 kg (a linear law in place of that of Castro "
-            "et al. 2019, arXiv 1909.05700)",
+            "et al. 2019, arXiv 1909.05700). Published: SimBenchmark's rolling test (leggedrobotics/SimBenchmark, "
+            "data/rolling/default.csv of 9 July 2018), in which ODE and DART do not move along the diagonal; the "
+            "authors of "
+            "RAI made the benchmark",
             &run_rolling};
 }
 
