@@ -1,6 +1,7 @@
 module;
 
 #include "archive_readme_md.hpp"
+#include "formats_md.hpp"
 #include "license.hpp"
 
 module aabblab.measuring;
@@ -352,12 +353,13 @@ int judge(const std::filesystem::path& out, std::span<const measurements> runs) 
     return failures.empty() ? 0 : 1;
 }
 
-/// Archives the files that a judgement reads, with their licence and a description, and prints the archive's size and
-/// checksum.
+/// Archives the files that a judgement reads, with their licence and what describes them, and prints the archive's size
+/// and checksum.
 void archive_reproduction(const std::filesystem::path& folder, const std::filesystem::path& file) {
-    write_archive(
-        file, archive_folder, folder, archived_files(folder),
-        {{"LICENSE", std::string(embedded::license)}, {"README.md", std::string(embedded::archive_readme_md)}});
+    write_archive(file, archive_folder, folder, archived_files(folder),
+                  {{"LICENSE", std::string(embedded::license)},
+                   {"README.md", std::string(embedded::archive_readme_md)},
+                   {"FORMATS.md", std::string(embedded::formats_md)}});
     const std::string bytes = bytes_of_file(file);
     print(fmt::format("The archive is {} ({:.1f} MiB), SHA-256 {}\n", visible(file.string()),
                       static_cast<double>(bytes.size()) / (1 << 20), sha256_of(bytes)));

@@ -92,6 +92,8 @@ TEST_CASE("An archive, and results with other line endings and another row order
 
     const aabblab::unpacked_archive unpacked(archive, aabblab::archive_folder);
     CHECK(bytes_of_file(unpacked.folder() / "LICENSE") == bytes_of_file(AABBLAB_CONFIGS "/../../LICENSE"));
+    CHECK(bytes_of_file(unpacked.folder() / "FORMATS.md") ==
+          bytes_of_file(AABBLAB_CONFIGS "/../../experiments/FORMATS.md"));
     // The description names every kind of file that is there.
     const std::string described = bytes_of_file(unpacked.folder() / "README.md");
     for (const std::filesystem::path& file : aabblab::archived_files(results)) {
