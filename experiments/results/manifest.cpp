@@ -199,11 +199,8 @@ std::string manifest_text(const experiment_record& e, const std::string& date, c
                       {"hash", e.hash},
                       {"quick", e.quick},
                       {"text", e.text}};
-    json manifest{
-        {"experiment", e.name},  {"date", date},
-        {"build", build_json()}, {"machine", machine_json()},
-        {"costs", costs_json()}, {"config", config},
-        {"scenes", scenes},      {"notes", e.notes}};
+    json manifest{{"experiment", e.name},  {"date", date},     {"build", build_json()}, {"machine", machine_json()},
+                  {"costs", costs_json()}, {"config", config}, {"scenes", scenes},      {"notes", e.notes}};
     if (seal) {
         manifest["defaults"] = defaults_json(e.scenes, seal->candidates);
         json& checksums = manifest["seal"] = json{{"results.csv", json_of(seal->results)}};
