@@ -1,7 +1,6 @@
 module;
 #include <sys/wait.h>
 #include <cerrno>
-#include <cstdlib>
 #include <cstring>
 
 module aabblab.checking;
@@ -16,13 +15,7 @@ namespace aabblab {
 
 namespace {
 
-folder_guard make_temporary_folder() {
-    std::error_code error;
-    std::string name = (std::filesystem::temp_directory_path(error) / ("aabblab-" + std::string(6, 'X'))).string();
-    if (error || !mkdtemp(name.data()))
-        throw aabb::input_error("--command needs a folder for temporary files (TMPDIR)");
-    return folder_guard(name);
-}
+constexpr std::string_view why_temporary = "--command cannot give a program a scene";
 
 /// Runs the program on input files; it writes the pairs to a file: COMMAND INPUTS… PAIRS TIMES. As an external engine
 /// it may write times, which are ignored.
@@ -144,12 +137,12 @@ aabb::mesh part_of(const aabb::mesh& whole, std::span<const std::uint32_t> trian
 }  // namespace
 
 pair_list list_of(const checked_program& program, const std::filesystem::path& recording) {
-    const folder_guard folder = make_temporary_folder();
+    const folder_guard folder(make_temporary_folder(why_temporary));
     return run_program(program, {recording.string()}, folder.folder());
 }
 
 pair_list list_of(const checked_program& program, const std::vector<aabb::mesh>& meshes) {
-    const folder_guard folder = make_temporary_folder();
+    const folder_guard folder(make_temporary_folder(why_temporary));
     std::vector<std::string> files;
     for (const aabb::mesh& m : meshes) {
         files.push_back((folder.folder() / (files.empty() ? "a.off" : "b.off")).string());
@@ -171,7 +164,7 @@ smallest_scene reduce_boxes(const checked_program& program, std::unique_ptr<aabb
     std::iota(objects.begin(), objects.end(), 0U);
     smallest_scene smallest;
     std::size_t first_frame = 0;
-    const folder_guard folder = make_temporary_folder();
+    const folder_guard folder(make_temporary_folder(why_temporary));
     const auto write = [&](std::size_t from, std::span<const std::uint32_t> of, const std::filesystem::path& to) {
         stored_scene part(all, from, first.frame, of);
         write_boxes(part, to, /*progress=*/{});

@@ -1,5 +1,4 @@
 module;
-#include <stdlib.h>
 #include <sys/wait.h>
 
 #include <cerrno>
@@ -103,16 +102,11 @@ public:
     /// The file with all frames for external programs, which the first call writes to a folder that `guard_` deletes.
     [[nodiscard]] const std::filesystem::path& recording() {
         if (!recording_.empty()) return recording_;
-        std::error_code error;
-        std::string name = (std::filesystem::temp_directory_path(error) / ("aabblab-" + std::string(6, 'X'))).string();
-        if (error || !mkdtemp(name.data()))
-            throw aabb::input_error(
-                "external engines cannot be given a scene: there is no folder for temporary files (TMPDIR)");
-        guard_.emplace(name);
+        guard_.emplace(make_temporary_folder("external engines cannot be given a scene"));
         const auto scene = make_box_scene(scene_);
         objects_ = scene->objects();
         frames_ = scene->frames();
-        const std::filesystem::path file = std::filesystem::path(name) / "scene.aabbs";
+        const std::filesystem::path file = guard_->folder() / "scene.aabbs";
         write_recording(*scene, scene_.kind, parameters_text(scene_), file, /*progress=*/{});
         if (!scene->in_double().empty())
             throw aabb::input_error("external engines read boxes of floats, but those of " + scene_.kind +

@@ -1,7 +1,6 @@
 module;
 #include <archive.h>
 #include <archive_entry.h>
-#include <stdlib.h>
 #include <unistd.h>
 
 module aabblab.archive;
@@ -12,15 +11,6 @@ import aabblab.files;
 namespace aabblab {
 
 namespace {
-
-/// Makes a temporary folder that only the user can access.
-std::filesystem::path make_temporary_folder() {
-    std::error_code error;
-    std::string name = (std::filesystem::temp_directory_path(error) / ("aabblab-" + std::string(6, 'X'))).string();
-    if (error || !mkdtemp(name.data()))
-        throw aabb::input_error("an archive cannot be unpacked: there is no folder for temporary files (TMPDIR)");
-    return name;
-}
 
 /// The path of an entry relative to the folder `top`. Rejects absolute paths and "..", which could lead outside.
 /// @param archive its file name, for the message
@@ -188,7 +178,7 @@ void write_archive(const std::filesystem::path& archive, const std::string& top,
 
 unpacked_archive::unpacked_archive(const std::filesystem::path& archive, const std::string& top,
                                    const archive_limits& limits)
-    : guard_(make_temporary_folder()) {
+    : guard_(make_temporary_folder("an archive cannot be unpacked")) {
     reader(archive, limits).unpack(top, folder());
 }
 

@@ -11,6 +11,7 @@ extern "C" {
 
 #include <cerrno>
 #include <csignal>
+#include <cstdlib>
 
 module aabblab.processes;
 
@@ -265,6 +266,14 @@ std::vector<std::string> lines_of_own_process(const std::vector<std::string>& ar
 
 std::filesystem::path own_folder() {
     return std::filesystem::read_symlink("/proc/self/exe").parent_path();
+}
+
+std::filesystem::path make_temporary_folder(std::string_view need) {
+    std::error_code error;
+    std::string name = (std::filesystem::temp_directory_path(error) / ("aabblab-" + std::string(6, 'X'))).string();
+    if (error || !mkdtemp(name.data()))
+        throw aabb::input_error(std::string(need) + ": there is no folder for temporary files (TMPDIR)");
+    return name;
 }
 
 /// Forks a guard process that removes the folder as soon as a pipe from this process closes, which the kernel does

@@ -42,6 +42,11 @@ struct ended_process {
 
 [[nodiscard]] std::filesystem::path own_folder();
 
+/// Makes a temporary folder, below TMPDIR, which only the user can access.
+/// @param need begins the message: "an archive cannot be unpacked"
+/// @throws aabb::input_error if there is no folder for temporary files.
+[[nodiscard]] std::filesystem::path make_temporary_folder(std::string_view need);
+
 /// Owns a temporary folder: removes it on destruction, and also if this process is killed by any signal.
 class folder_guard {
 public:
