@@ -27,11 +27,26 @@ struct pair_list {
     bool has_frames = false;  ///< otherwise all rows are of frame 0
 };
 
-/// Reads a list of pairs: text with commas, semicolons or blanks between integers, with or without a header, or the
-/// array of an .npy file with two or three columns. Columns are frame, a and b, or only a and b; a header names them
-/// in any order, among others.
+/// Reads a list of pairs: text with commas, semicolons or blanks between integers, with or without a header; the array
+/// of an .npy file; or an object with columns and rows in a .json file. Columns are frame, a and b, or only a and b; a
+/// header names them in any order, among others.
+/// @param may_have_frames if not, of three columns without a header the last is ignored
 /// @throws aabb::input_error with file and line if a row has other columns or anything but integers.
-[[nodiscard]] pair_list read_pair_list(const std::filesystem::path& file);
+[[nodiscard]] pair_list read_pair_list(const std::filesystem::path& file, bool may_have_frames = true);
+
+/// A row of a list of contacts of moving meshes.
+struct listed_contact {
+    std::uint32_t frame = 0;
+    aabb::contact contact{};
+};
+
+struct contact_list {
+    std::vector<listed_contact> rows;
+    bool has_frames = false;
+};
+
+/// The same for columns object_a, object_b, triangle_a and triangle_b, perhaps with a frame.
+[[nodiscard]] contact_list read_contact_list(const std::filesystem::path& file);
 
 /// The wrong pairs of a class.
 struct class_counts {
@@ -42,9 +57,10 @@ struct class_counts {
 struct wrong_pair {
     std::uint32_t frame = 0;
     aabb::index_pair pair{};
-    bool is_listed = false;           ///< a false positive; otherwise a false negative
-    std::string description;          ///< its class, and its gap
-    std::vector<std::string> shapes;  ///< both boxes or triangles in hexadecimal, a line each
+    bool is_listed = false;                     ///< a false positive; otherwise a false negative
+    std::optional<aabb::index_pair> objects{};  ///< of a contact, whose triangles are the pair
+    std::string description{};                  ///< its class, and its gap
+    std::vector<std::string> shapes{};          ///< both boxes or triangles in decimal and hexadecimal, a line each
 };
 
 struct wrong_frame {
@@ -75,9 +91,15 @@ struct check_result {
 };
 inline constexpr std::size_t most_shown = 10;
 
-/// Checks a list of overlapping boxes in every frame of a scene.
+/// Checks a list of overlapping boxes in every frame of a scene, of the pairs that its filter keeps.
+/// @param within if the list is of the boxes that are so near each other
 /// @throws aabb::input_error if the list has no frames although the scene has several.
-[[nodiscard]] check_result check_boxes(scene_frames& scene, pair_list list);
+[[nodiscard]] check_result check_boxes(scene_frames& scene, pair_list list, const std::optional<nearness>& within = {});
+
+/// Checks a list of contacts, or of triangles that are near each other, in every frame of a scene of meshes.
+/// @throws aabb::input_error likewise, and if the objects have 2^32 - 1 triangles or more in all.
+[[nodiscard]] check_result check_contacts(scene_frames& scene, const contact_list& list,
+                                          const std::optional<nearness>& within = {});
 
 /// The meshes and poses of `check_triangles`, as for `search_meshes`.
 struct mesh_check {
@@ -85,6 +107,7 @@ struct mesh_check {
     aabb::pose pose_a = {};
     given_poses poses_b = {{aabb::pose{}}, {}, {}};
     std::optional<self_pairs> self = {};
+    std::optional<nearness> within = {};
     std::string between = {};  ///< for messages
 };
 /// Checks a list of intersecting triangles of two meshes, in every pose, or of one mesh with itself.
@@ -97,6 +120,8 @@ struct checked_list {
     std::string frames = "frame";    ///< or "pose"
 };
 [[nodiscard]] std::string text_of(const check_result& result, const checked_list& of);
+/// The same in one paragraph, with fewer pairs and without their shapes.
+[[nodiscard]] std::string brief_text_of(const check_result& result, const checked_list& of);
 [[nodiscard]] std::string json_of(const check_result& result, const checked_list& of);
 
 /// A program that writes a list of pairs: a command line for the shell, to which the names of its input and output
@@ -110,6 +135,9 @@ struct checked_program {
 /// @throws aabb::input_error if it fails or writes no list.
 [[nodiscard]] pair_list list_of(const checked_program& program, const std::filesystem::path& recording);
 [[nodiscard]] pair_list list_of(const checked_program& program, const std::vector<aabb::mesh>& meshes);
+
+/// The number of rows that only one of two lists has; in any order.
+[[nodiscard]] std::size_t count_different_rows(pair_list first, pair_list second);
 
 /// The smallest scene that was found in which the program's list is wrong.
 struct smallest_scene {

@@ -3,21 +3,51 @@ module aabblab.checking;
 import aabb.base;
 import aabblab.files;
 import aabblab.fmt;
+import aabblab.json;
 
 namespace aabblab {
 
 namespace {
 
-/// The places of frame and ids among the columns; without frames, that of the frame is empty.
-struct list_columns {
-    std::optional<std::size_t> frame;
-    std::size_t a = 0, b = 1;
-    std::size_t count = 2;
+/// What the rows of a list may have.
+struct list_form {
+    std::size_t ids;       ///< of a row
+    bool may_have_frames;  ///< before them
+    std::string_view expected;
+    std::span<const std::string_view> names;  ///< of the ids of a row, then others that are usual, and so on
 };
 
-list_columns columns_by_place(std::size_t count) {
-    if (count == 2) return {.frame = {}, .a = 0, .b = 1, .count = 2};
-    return {.frame = 0, .a = 1, .b = 2, .count = 3};
+constexpr std::array<std::string_view, 16> names_of_pairs{
+    "a",          "b",          "i",     "j",      "id_a", "id_b", "object_a", "object_b",
+    "triangle_a", "triangle_b", "first", "second", "id1",  "id2",  "i1",       "i2"};
+constexpr std::array<std::string_view, 4> names_of_contacts{"object_a", "object_b", "triangle_a", "triangle_b"};
+
+list_form form_of_pairs(bool may_have_frames) {
+    return {.ids = 2,
+            .may_have_frames = may_have_frames,
+            .expected = may_have_frames ? "a,b or frame,a,b" : "a,b",
+            .names = names_of_pairs};
+}
+
+constexpr std::string_view columns_of_contacts = "object_a,object_b,triangle_a,triangle_b, perhaps after frame";
+list_form form_of_contacts() {
+    return {.ids = 4, .may_have_frames = true, .expected = columns_of_contacts, .names = names_of_contacts};
+}
+
+/// The places of frame and ids among the columns; without frames, that of the frame is empty.
+struct list_columns {
+    std::optional<std::size_t> frame = {};
+    std::vector<std::size_t> ids = {};
+    std::size_t count = 0;
+};
+
+/// The columns of rows without a header; empty if rows have another number of them.
+std::optional<list_columns> columns_by_place(std::size_t count, const list_form& form) {
+    if (count != form.ids && count != form.ids + 1) return std::nullopt;
+    list_columns columns{.count = count};
+    if (form.may_have_frames && count > form.ids) columns.frame = 0;
+    for (std::size_t i = 0; i < form.ids; ++i) columns.ids.push_back(columns.frame ? i + 1 : i);
+    return columns;
 }
 
 constexpr bool separates(char c) {
@@ -38,6 +68,16 @@ void split(std::string_view line, std::vector<std::string_view>& words) {
     }
 }
 
+std::uint32_t id_of(std::int64_t number) {
+    return number >= 0 && number < beyond_all ? static_cast<std::uint32_t>(number) : beyond_all;
+}
+
+/// Empty if the number is no integer.
+std::optional<std::uint32_t> id_of(double number) {
+    if (number != std::floor(number)) return std::nullopt;
+    return number >= 0 && number < beyond_all ? static_cast<std::uint32_t>(number) : beyond_all;
+}
+
 /// The integer of a word, which may be written as a floating-point number; empty if it is none. Those that no scene has
 /// are `beyond_all`.
 std::optional<std::uint32_t> id_of(std::string_view word) {
@@ -47,11 +87,9 @@ std::optional<std::uint32_t> id_of(std::string_view word) {
         if (end != last || error == std::errc::invalid_argument) return std::nullopt;
         return error == std::errc{} ? number : std::numeric_limits<decltype(number)>::max();
     };
-    if (const auto id = parsed(std::int64_t{0}))
-        return *id >= 0 && *id < beyond_all ? static_cast<std::uint32_t>(*id) : beyond_all;
+    if (const auto id = parsed(std::int64_t{0})) return id_of(*id);
     const auto number = parsed(0.0);
-    if (!number || *number != std::floor(*number)) return std::nullopt;
-    return *number >= 0 && *number < beyond_all ? static_cast<std::uint32_t>(*number) : beyond_all;
+    return number ? id_of(*number) : std::nullopt;
 }
 
 /// Whether the words are names: a line with any number is no header.
@@ -62,20 +100,13 @@ bool is_header(std::span<const std::string_view> words) {
     });
 }
 
-/// The columns that a header names, by any of the names that are usual for frames and for the two ids.
+/// The columns that a header names, by any of the names that are usual for frames and ids.
 /// @throws aabb::input_error without file and line
-list_columns columns_of_header(std::span<const std::string_view> names) {
+template <class Names>
+list_columns columns_of_header(const Names& names, const list_form& form) {
     constexpr std::array<std::string_view, 6> frames{"frame", "step", "pose", "time_step", "timestep", "t"};
-    constexpr std::array<std::array<std::string_view, 2>, 8> ids{{{"a", "b"},
-                                                                  {"i", "j"},
-                                                                  {"id_a", "id_b"},
-                                                                  {"object_a", "object_b"},
-                                                                  {"triangle_a", "triangle_b"},
-                                                                  {"first", "second"},
-                                                                  {"id1", "id2"},
-                                                                  {"i1", "i2"}}};
     std::vector<std::string> lower;
-    for (const std::string_view name : names) {
+    for (const auto& name : names) {
         lower.emplace_back(name);
         for (char& c : lower.back()) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
     }
@@ -84,37 +115,41 @@ list_columns columns_of_header(std::span<const std::string_view> names) {
         if (column == lower.end()) return std::nullopt;
         return static_cast<std::size_t>(column - lower.begin());
     };
-    list_columns columns{.frame = {}, .a = 0, .b = 0, .count = names.size()};
+    list_columns columns{.count = lower.size()};
     for (const std::string_view name : frames)
-        if (!columns.frame) columns.frame = place_of(name);
-    for (const auto& [a, b] : ids)
-        if (place_of(a) && place_of(b)) {
-            columns.a = *place_of(a);
-            columns.b = *place_of(b);
-            return columns;
-        }
-    throw aabb::input_error("the header names no columns a and b, such as frame,a,b or i,j");
+        if (!columns.frame && form.may_have_frames) columns.frame = place_of(name);
+    for (std::span<const std::string_view> ids = form.names; !ids.empty(); ids = ids.subspan(form.ids)) {
+        columns.ids.clear();
+        for (const std::string_view name : ids.first(form.ids))
+            if (const auto place = place_of(name)) columns.ids.push_back(*place);
+        if (columns.ids.size() == form.ids) return columns;
+    }
+    throw aabb::input_error(form.ids == 2 ? "the header names no columns a and b, such as frame,a,b or i,j"
+                                          : "the header names no columns " + std::string(columns_of_contacts));
 }
 
-/// Reads a list of pairs as text, line by line.
-pair_list read_text(const std::filesystem::path& file) {
-    pair_list list;
+/// Receives a row: the frame, or 0, and the ids.
+using row_receiver = std::function<void(std::uint32_t frame, std::span<const std::uint32_t> ids)>;
+
+/// Reads a list as text, line by line.
+/// @returns whether it has frames; a file without rows is a list without pairs, of any frame.
+bool read_text(const std::filesystem::path& file, const list_form& form, const row_receiver& take) {
     std::optional<list_columns> columns;
     std::vector<std::string_view> words;
+    std::vector<std::uint32_t> ids(form.ids);
     for (line_stream lines(file); lines.next();) {
         split(without_comment(lines.line()), words);
         if (words.empty()) continue;
         if (!columns) {
             const bool has_names = is_header(words);
-            if (!has_names && words.size() != 2 && words.size() != 3)
-                lines.fail(fmt::format(
-                    "expected a,b or frame,a,b, or a header that names more columns, found {} columns", words.size()));
             try {
-                columns = has_names ? columns_of_header(words) : columns_by_place(words.size());
+                columns = has_names ? columns_of_header(words, form) : columns_by_place(words.size(), form);
             } catch (const aabb::input_error& error) {
                 lines.fail(error.what());
             }
-            list.has_frames = columns->frame.has_value();
+            if (!columns)
+                lines.fail(fmt::format("expected {}, or a header that names more columns, found {} columns",
+                                       form.expected, words.size()));
             if (has_names) continue;
         }
         if (words.size() < columns->count)
@@ -124,33 +159,77 @@ pair_list read_text(const std::filesystem::path& file) {
             if (!value) lines.fail(fmt::format("expected an integer, found '{}'", words[column]));
             return *value;
         };
-        list.rows.push_back({columns->frame ? id(*columns->frame) : 0, {id(columns->a), id(columns->b)}});
+        for (std::size_t i = 0; i < form.ids; ++i) ids[i] = id(columns->ids[i]);
+        take(columns->frame ? id(*columns->frame) : 0, ids);
     }
-    // A file without rows is a list without pairs, of any frame.
-    if (!columns) list.has_frames = true;
-    return list;
+    return !columns || columns->frame;
 }
 
-pair_list read_array(const std::filesystem::path& file) {
+bool read_array(const std::filesystem::path& file, const list_form& form, const row_receiver& take) {
     const number_array<std::int64_t> array = read_npy_integers(file);
-    if (array.shape.size() != 2 || (array.shape[1] != 2 && array.shape[1] != 3))
-        throw aabb::input_error(file.string() + ": expected an array of two or three columns, a, b or frame, a, b");
-    const list_columns columns = columns_by_place(array.shape[1]);
+    std::optional<list_columns> columns;
+    if (array.shape.size() == 2) columns = columns_by_place(array.shape[1], form);
+    if (!columns)
+        throw aabb::input_error(fmt::format("{}: expected an array with the columns {}", file.string(), form.expected));
     const auto id = [&](std::size_t row, std::size_t column) {
-        const std::int64_t value = array.values[row * columns.count + column];
-        return value >= 0 && value < beyond_all ? static_cast<std::uint32_t>(value) : beyond_all;
+        return id_of(array.values[row * columns->count + column]);
     };
-    pair_list list{.rows = {}, .has_frames = columns.frame.has_value()};
-    list.rows.reserve(array.shape[0]);
-    for (std::size_t row = 0; row < array.shape[0]; ++row)
-        list.rows.push_back({columns.frame ? id(row, *columns.frame) : 0, {id(row, columns.a), id(row, columns.b)}});
-    return list;
+    std::vector<std::uint32_t> ids(form.ids);
+    for (std::size_t row = 0; row < array.shape[0]; ++row) {
+        for (std::size_t i = 0; i < form.ids; ++i) ids[i] = id(row, columns->ids[i]);
+        take(columns->frame ? id(row, *columns->frame) : 0, ids);
+    }
+    return columns->frame.has_value();
+}
+
+/// Reads an object with columns and rows, as commands write it.
+bool read_json(const std::filesystem::path& file, const list_form& form, const row_receiver& take) {
+    const json_value document(file.string(), text_of_file(file), "is not a list of pairs");
+    list_columns columns;
+    try {
+        columns = columns_of_header(document.needed("columns").texts(), form);
+    } catch (const aabb::input_error& error) {
+        const std::string message = error.what();
+        throw aabb::input_error(message.starts_with(file.string()) ? message : file.string() + ": " + message);
+    }
+    std::vector<std::uint32_t> ids(form.ids);
+    for (const json_value& row : document.needed("rows").list()) {
+        const std::vector<json_value> cells = row.list();
+        if (cells.size() < columns.count) row.fail(fmt::format("must have {} columns", columns.count));
+        const auto id = [&](std::size_t column) {
+            const std::optional<std::uint32_t> value = id_of(cells[column].number());
+            if (!value) cells[column].fail("must be an integer");
+            return *value;
+        };
+        for (std::size_t i = 0; i < form.ids; ++i) ids[i] = id(columns.ids[i]);
+        take(columns.frame ? id(*columns.frame) : 0, ids);
+    }
+    return columns.frame.has_value();
+}
+
+bool read_rows(const std::filesystem::path& file, const list_form& form, const row_receiver& take) {
+    return file.extension() == ".npy"    ? read_array(file, form, take)
+           : file.extension() == ".json" ? read_json(file, form, take)
+                                         : read_text(file, form, take);
 }
 
 }  // namespace
 
-pair_list read_pair_list(const std::filesystem::path& file) {
-    return file.extension() == ".npy" ? read_array(file) : read_text(file);
+pair_list read_pair_list(const std::filesystem::path& file, bool may_have_frames) {
+    pair_list list;
+    list.has_frames =
+        read_rows(file, form_of_pairs(may_have_frames), [&](std::uint32_t frame, std::span<const std::uint32_t> ids) {
+            list.rows.push_back({frame, {ids[0], ids[1]}});
+        });
+    return list;
+}
+
+contact_list read_contact_list(const std::filesystem::path& file) {
+    contact_list list;
+    list.has_frames = read_rows(file, form_of_contacts(), [&](std::uint32_t frame, std::span<const std::uint32_t> ids) {
+        list.rows.push_back({frame, {.a = ids[0], .b = ids[1], .triangle_a = ids[2], .triangle_b = ids[3]}});
+    });
+    return list;
 }
 
 }  // namespace aabblab

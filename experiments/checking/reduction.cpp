@@ -19,8 +19,9 @@ constexpr std::string_view why_temporary = "--command cannot give a program a sc
 
 /// Runs the program on input files; it writes the pairs to a file: COMMAND INPUTS… PAIRS TIMES. As an external engine
 /// it may write times, which are ignored.
+/// @param may_have_frames as for `read_pair_list`
 pair_list run_program(const checked_program& program, const std::vector<std::string>& inputs,
-                      const std::filesystem::path& folder) {
+                      const std::filesystem::path& folder, bool may_have_frames = true) {
     const std::filesystem::path pairs = folder / "pairs.csv";
     std::filesystem::remove(pairs);
     // The shell divides the command into words; "$@" are the names of files.
@@ -39,7 +40,7 @@ pair_list run_program(const checked_program& program, const std::vector<std::str
     if (WEXITSTATUS(ended.status) != 0) fail(fmt::format("ended with status {}", WEXITSTATUS(ended.status)));
     if (!std::filesystem::exists(pairs))
         fail(fmt::format("wrote no list of pairs: it should create the file of its argument {}", inputs.size() + 1));
-    return read_pair_list(pairs);
+    return read_pair_list(pairs, may_have_frames);
 }
 
 /// Some frames of a scene of boxes, in memory.
@@ -148,7 +149,16 @@ pair_list list_of(const checked_program& program, const std::vector<aabb::mesh>&
         files.push_back((folder.folder() / (files.empty() ? "a.off" : "b.off")).string());
         write_off(m, files.back());
     }
-    return run_program(program, files, folder.folder());
+    return run_program(program, files, folder.folder(), /*may_have_frames=*/meshes.size() == 2);
+}
+
+std::size_t count_different_rows(pair_list first, pair_list second) {
+    std::ranges::sort(first.rows);
+    std::ranges::sort(second.rows);
+    std::vector<listed_pair> different;
+    std::ranges::set_difference(first.rows, second.rows, std::back_inserter(different));
+    std::ranges::set_difference(second.rows, first.rows, std::back_inserter(different));
+    return different.size();
 }
 
 smallest_scene reduce_boxes(const checked_program& program, std::unique_ptr<aabb::box_scene> scene,

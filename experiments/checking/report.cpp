@@ -55,11 +55,17 @@ std::string frames_text(const check_result& r, const checked_list& of) {
                        counted(r.frames.size(), of.frames), text);
 }
 
+/// "frame 3: 4,7 is a false negative (touching on x)"
+std::string line_of(const wrong_pair& w, const checked_list& of) {
+    const std::string objects = w.objects ? fmt::format("objects {},{}, triangles ", w.objects->a, w.objects->b) : "";
+    return fmt::format("{} {}: {}{},{} is {} ({})", of.frames, w.frame, objects, w.pair.a, w.pair.b,
+                       w.is_listed ? "a false positive" : "a false negative", w.description);
+}
+
 std::string first_text(const check_result& r, const checked_list& of) {
     std::string text = fmt::format("\nThe first {}:\n", r.first.size() == 1 ? "one" : grouped(r.first.size()));
     for (const wrong_pair& w : r.first) {
-        text += fmt::format("{} {}: {},{} is {} ({})\n", of.frames, w.frame, w.pair.a, w.pair.b,
-                            w.is_listed ? "a false positive" : "a false negative", w.description);
+        text += wrapped(line_of(w, of)) + "\n";
         for (const std::string& shape : w.shapes) text += hanging("  ", shape, paragraph_width()) + "\n";
     }
     return text;
@@ -76,6 +82,31 @@ std::string text_of(const check_result& r, const checked_list& of) {
     for (const std::string& sentence : r.patterns) text += "\n" + wrapped(sentence) + "\n";
     if (r.first.empty()) return text;
     return text + classes_text(r) + "\n" + wrapped(frames_text(r, of)) + "\n" + first_text(r, of);
+}
+
+std::string brief_text_of(const check_result& r, const checked_list& of) {
+    constexpr std::size_t most = 3;
+    std::string text =
+        fmt::format("{} on {}: {} of {}", of.list, of.scene, counted(r.listed, "row"), counted(r.expected, "pair"));
+    if (r.is_right()) return text + "; the list is right.";
+    text += fmt::format(", {} and {}", counted(r.false_negatives(), "false negative"),
+                        counted(r.false_positives(), "false positive"));
+    const std::array<std::pair<std::uint64_t, std::string_view>, 4> faults{{{r.duplicates, "duplicate"},
+                                                                            {r.self_pairs, "self pair"},
+                                                                            {r.unknown_ids, "unknown id"},
+                                                                            {r.unknown_frames, "unknown frame"}}};
+    for (const auto& [count, name] : faults)
+        if (count > 0) text += ", " + counted(count, name);
+    std::string classes;
+    for (const class_counts& c : r.classes)
+        if (c.false_negatives + c.false_positives > 0)
+            classes += fmt::format("{}{} (-{} +{})", classes.empty() ? ": " : ", ", c.name, c.false_negatives,
+                                   c.false_positives);
+    text += classes + ".";
+    for (const std::string& sentence : r.patterns) text += " " + sentence;
+    for (const wrong_pair& w : std::span(r.first).first(std::min(most, r.first.size())))
+        text += fmt::format(" In {}.", line_of(w, of));
+    return text;
 }
 
 std::string json_of(const check_result& r, const checked_list& of) {
@@ -100,13 +131,15 @@ std::string json_of(const check_result& r, const checked_list& of) {
                                       {"check_ms", r.check_ms}};
     for (const class_counts& c : r.classes) summary["classes"][c.name] = {c.false_negatives, c.false_positives};
     for (const wrong_frame& f : r.frames) summary["frames"].push_back({f.frame, f.false_negatives, f.false_positives});
-    for (const wrong_pair& w : r.first)
-        summary["first"].push_back({{of.frames, w.frame},
-                                    {"a", w.pair.a},
-                                    {"b", w.pair.b},
-                                    {"listed", w.is_listed},
-                                    {"description", w.description},
-                                    {"shapes", w.shapes}});
+    for (const wrong_pair& w : r.first) {
+        auto& pair = summary["first"].emplace_back(nlohmann::ordered_json{{of.frames, w.frame},
+                                                                          {"a", w.pair.a},
+                                                                          {"b", w.pair.b},
+                                                                          {"listed", w.is_listed},
+                                                                          {"description", w.description},
+                                                                          {"shapes", w.shapes}});
+        if (w.objects) pair["objects"] = {w.objects->a, w.objects->b};
+    }
     return summary.dump() + "\n";
 }
 

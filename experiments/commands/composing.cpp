@@ -83,6 +83,16 @@ void add_within(const command_parser& command, std::optional<double>* distance, 
                    fmt::format("Find the pairs of {0} whose distance is at most D, exactly", pairs));
 }
 
+void add_metric(const command_parser& command, std::optional<aabb::box_metric>* metric) {
+    const auto take = [metric](const std::string& text) {
+        if (text != "euclidean" && text != "axis")
+            throw aabb::input_error(fmt::format("--metric is euclidean or axis, not '{}'", text));
+        *metric = text == "axis" ? aabb::box_metric::axis : aabb::box_metric::euclidean;
+    };
+    command.option("--metric M", take,
+                   "The distance of --within: euclidean, or axis, the greatest gap on an axis (default euclidean)");
+}
+
 void require_no_triangle_test(const search_choice& choice) {
     if (choice.engine) throw aabb::input_error("no engine compares distances; omit --engine");
     if (choice.named[aabb::strategy_kind::triangle])

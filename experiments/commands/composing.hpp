@@ -1,5 +1,6 @@
 #pragma once
 
+import aabb.distance;
 import aabb.pipeline;
 import aabb.registry;
 import aabb.std;
@@ -40,6 +41,9 @@ void add_touching(const command_parser& command, bool* touching, const std::stri
 /// The option --within, a distance.
 /// @param pairs "triangles" or "boxes", for the help
 void add_within(const command_parser& command, std::optional<double>* distance, const std::string& pairs);
+
+/// The option --metric, of the distance of boxes.
+void add_metric(const command_parser& command, std::optional<aabb::box_metric>* metric);
 
 /// Rejects the choice of what decides whether triangles intersect, which their distances replace.
 void require_no_triangle_test(const search_choice& choice);

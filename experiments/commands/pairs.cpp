@@ -83,13 +83,7 @@ void add_pairs(const command_parser& program) {
     request.method.add_to(command, "these strategies");
     add_filter_options(command, &request.filter);
     add_within(command, &request.within, "boxes");
-    const auto take_metric = [&request](const std::string& text) {
-        if (text != "euclidean" && text != "axis")
-            throw aabb::input_error(fmt::format("--metric is euclidean or axis, not '{}'", text));
-        request.metric = text == "axis" ? aabb::box_metric::axis : aabb::box_metric::euclidean;
-    };
-    command.option("--metric M", take_metric,
-                   "The distance of --within: euclidean, or axis, the greatest gap on an axis (default euclidean)");
+    add_metric(command, &request.metric);
     command.option("--out FILE", &request.out, "File for the pairs, rows frame,a,b: CSV, or .npy or .json");
     command.flag(
         "--swept", &request.swept,

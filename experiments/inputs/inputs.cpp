@@ -79,13 +79,6 @@ std::vector<std::string> split_numbers(std::string_view line) {
 
 namespace {
 
-/// Whether the name is a shape or a file with a mesh extension; other files are motions.
-bool is_mesh_name(const std::string& name) {
-    if (!is_mesh(name, {})) return false;
-    const std::vector<std::string> endings = mesh_endings();
-    return !std::filesystem::exists(name) || std::ranges::find(endings, mesh_ending_of(name)) != endings.end();
-}
-
 constexpr std::size_t most_poses = 10'000'000;  // as in motions; a pipe could otherwise deliver poses without end
 
 /// Parses the rows of [R t], and rejects a singular matrix R.
@@ -179,6 +172,12 @@ void require_two_files(const std::string& a, const std::string& file, const std:
     if (std::filesystem::equivalent(file, other, ignored) ||
         std::filesystem::weakly_canonical(file) == std::filesystem::weakly_canonical(other))
         throw aabb::input_error(a + " and " + b + " are the same file, " + file);
+}
+
+bool is_mesh_name(const std::string& name) {
+    if (!is_mesh(name, {})) return false;
+    const std::vector<std::string> endings = mesh_endings();
+    return !std::filesystem::exists(name) || std::ranges::find(endings, mesh_ending_of(name)) != endings.end();
 }
 
 bool is_config_name(const std::string& argument) {

@@ -68,6 +68,9 @@ inline constexpr const char* scene_arguments_help =
 
 [[nodiscard]] bool is_config_name(const std::string& argument);
 
+/// Whether the name is a shape or a file with a mesh extension; other files are motions.
+[[nodiscard]] bool is_mesh_name(const std::string& name);
+
 /// The scene that the arguments describe.
 /// @throws aabb::input_error if they do not describe a scene.
 [[nodiscard]] scene_choice scene_of_arguments(const std::vector<std::string>& arguments);
