@@ -5,6 +5,7 @@ module;
 
 module aabblab.suites;
 
+import :wrong_lists;
 import aabb.policy;
 import aabb.registry;
 import aabb.validation;
@@ -112,7 +113,9 @@ void run_scenes(
     if (e.records(metric_group::time) && !is_multi_threaded(e)) pinned.emplace();
     for (std::size_t i = 0; i < e.scenes.size(); ++i) {
         const scene_choice& scene = e.scenes[i];
-        std::ranges::for_each(run_scene(e, scene, candidates_for(e, scene), results, process), report);
+        const std::vector<candidate> candidates = candidates_for(e, scene);
+        std::ranges::for_each(run_scene(e, scene, candidates, results, process), report);
+        report_wrong_lists(e, i, candidates, results.path());
         finished(i);
     }
 }

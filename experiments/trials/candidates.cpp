@@ -160,6 +160,14 @@ public:
         if (!value || *value >= end) fail("expected " + std::string(singular) + " below " + std::to_string(end));
         return *value;
     }
+    /// A number below `end`; empty if it is another integer.
+    [[nodiscard]] std::optional<std::uint32_t> number_if_known(std::size_t column, std::string_view singular,
+                                                               std::size_t end) const {
+        const std::optional<std::int64_t> value = parsed<std::int64_t>(column);
+        if (!value) fail("expected " + std::string(singular) + " below " + std::to_string(end));
+        if (*value < 0 || static_cast<std::uint64_t>(*value) >= end) return std::nullopt;
+        return static_cast<std::uint32_t>(*value);
+    }
     [[nodiscard]] double milliseconds(std::size_t column) const {
         const std::optional<double> value = parsed<double>(column);
         if (!value || !(*value >= 0) || !std::isfinite(*value))
@@ -195,13 +203,18 @@ class external_search final : public aabb::global_stage {
 public:
     /// Runs the engine, an external program, on all frames at once; `update` then advances through its pairs.
     /// @param exchange the recorded scene, and the folder for the output
-    /// @param times receives the reported times, by frame
+    /// @param output receives the reported times, the names of the files and, as frames are taken, the faulty rows
     /// @throws engine_timeout, and aabb::input_error if the engine fails or reports malformed times
-    external_search(const external_engine& engine, exchange_folder& exchange, std::vector<reported_times>& times)
-        : place_(engine.place + ": " + exchange.scene_text() + ": "), name_("external engine '" + engine.name + "'") {
+    external_search(const external_engine& engine, exchange_folder& exchange, external_output& output)
+        : output_(output),
+          place_(engine.place + ": " + exchange.scene_text() + ": "),
+          name_("external engine '" + engine.name + "'") {
         with_place([&] {
             run(engine, exchange);
-            read_times(times);
+            read_times(output.times);
+            output.recording = exchange.recording();
+            output.pairs = pairs_file_;
+            output.faulty_rows = 0;
             table_.emplace("the pairs of the " + name_, pairs_file_, "frame,a,b");
             read_next_row();
         });
@@ -210,7 +223,7 @@ public:
     void insert(std::uint32_t) override {}
     void remove(std::uint32_t) override {}
     /// Advances to the next frame.
-    /// @throws aabb::input_error on rows that are malformed, duplicated, or of an earlier frame
+    /// @throws aabb::input_error on rows that are malformed, or of an earlier frame
     void update(std::span<const aabb::box>) override {
         with_place([this] { take_frame(); });
     }
@@ -287,18 +300,23 @@ private:
             throw aabb::input_error("the times of the " + name_ + " end before frame " + std::to_string(times.size()));
     }
 
-    /// Reads the next row of the pairs file, which may belong to a later frame, into `next_row_`; empty at its end.
+    /// Reads the next row that the scene can have, which may belong to a later frame, into `next_row_`; empty at the
+    /// end of the file.
     void read_next_row() {
         next_row_.reset();
-        if (!table_->next()) return;
-        const std::uint32_t frame = table_->number(0, "a frame", frames_);
-        const std::uint32_t a = table_->number(1, "an object", objects_);
-        const std::uint32_t b = table_->number(2, "an object", objects_);
-        if (a == b) table_->fail("object " + std::to_string(a) + " is paired with itself");
-        next_row_ = {frame, aabb::ordered_pair(a, b)};
+        while (table_->next()) {
+            const auto frame = table_->number_if_known(0, "a frame", frames_);
+            const auto a = table_->number_if_known(1, "an object", objects_);
+            const auto b = table_->number_if_known(2, "an object", objects_);
+            if (frame && a && b && *a != *b) {
+                next_row_ = {*frame, aabb::ordered_pair(*a, *b)};
+                return;
+            }
+            ++output_.faulty_rows;
+        }
     }
 
-    /// Collects the pairs of `frame_` up to a row of a later frame; rows must be sorted by frame, and distinct.
+    /// Collects the pairs of `frame_`, each once, up to a row of a later frame; rows must be sorted by frame.
     void take_frame() {
         pairs_.clear();
         for (; next_row_ && next_row_->frame <= frame_; read_next_row()) {
@@ -310,12 +328,13 @@ private:
             pairs_.push_back(next_row_->pair);
         }
         sort_rows(pairs_);
-        if (const auto duplicate = std::ranges::adjacent_find(pairs_); duplicate != pairs_.end())
-            throw aabb::input_error(fmt::format("the pairs of the {} contain {} {} twice in frame {}", name_,
-                                                duplicate->a, duplicate->b, frame_));
+        const auto repeated = std::ranges::unique(pairs_);
+        output_.faulty_rows += repeated.size();
+        pairs_.erase(repeated.begin(), repeated.end());
         ++frame_;
     }
 
+    external_output& output_;
     std::string place_, name_;
     std::filesystem::path pairs_file_, times_file_;
     std::size_t objects_ = 0, frames_ = 0;
@@ -331,10 +350,9 @@ candidate candidate_of(const external_engine& engine, const std::shared_ptr<exch
     candidate result;
     result.name.engine = engine.name;
     result.exact = result.exact_boxes = engine.exact;
-    const std::shared_ptr times = std::make_unique<std::vector<reported_times>>();
-    result.reported = times;
-    result.make_global = [engine, exchange, times](aabb::instrumentation) {
-        return std::make_unique<external_search>(engine, *exchange, *times);
+    result.reported = std::make_unique<external_output>();
+    result.make_global = [engine, exchange, output = result.reported](aabb::instrumentation) {
+        return std::make_unique<external_search>(engine, *exchange, *output);
     };
     return result;
 }

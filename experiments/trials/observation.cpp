@@ -74,7 +74,7 @@ observation observe(scene_frames& scene, const candidate& tested, const protocol
     };
     const auto detect = [&](stage_runner& r) { return time_query(r, settings.query, result.wrong); };
     run_frames(scene, *runner, add_frame, settings.frames, detect);
-    if (tested.reported) use_reported_times(*tested.reported, result);
+    if (tested.reported) use_reported_times(tested.reported->times, result);
     result.digest = totals.digest();
     result.bytes = runner->held_bytes();
     result.work = runner->counters();

@@ -111,6 +111,7 @@ std::string time_repeat(const scene_choice& scene, const query_settings& query, 
     store(times.rest.search, r.search_ms, r.search_cpu_ms);
     store(times.rest.detect, r.detect_ms, r.detect_cpu_ms);
     std::string wrong = times.wrong;
+    if (wrong.empty() && is_external) wrong = timed.tested->reported->fault();
     if (wrong.empty() && times.digest != r.digest && !may_diverge(scene, *timed.tested))
         wrong = "its digest is " + times.digest + " when timed, but was " + r.digest + " when validated";
     if (wrong.empty()) return {};
@@ -201,6 +202,7 @@ std::vector<std::string> run_scene(const experiment& e, const scene_choice& scen
             return;
         }
         if (failure.empty()) return results.add(next.result);
+        if (next.tested->reported) next.tested->reported->is_wrong = true;
         stopped.insert(next.result.name);
         failures.push_back(failure);
         results.drop([&](const row& r) { return r.scene == scene && r.name == next.result.name; });

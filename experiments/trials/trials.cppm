@@ -24,6 +24,22 @@ struct reported_times {
     double update_ms = 0, search_ms = 0;
 };
 
+/// What an external engine read and wrote when it last ran on a scene. The files last as long as its candidate.
+struct external_output {
+    std::vector<reported_times> times;  ///< by frame
+    std::filesystem::path recording, pairs;
+    std::uint64_t faulty_rows = 0;  ///< with ids or frames that the scene does not have, or a pair that was there
+    bool is_wrong = false;          ///< whether its pairs differed from the ground truth
+
+    /// A sentence about faulty rows, without its beginning; empty if there are none.
+    [[nodiscard]] std::string fault() const {
+        if (faulty_rows == 0) return {};
+        return std::to_string(faulty_rows) + (faulty_rows == 1
+                                                  ? " row of its list cannot be a pair of the scene, or repeats one"
+                                                  : " rows of its list cannot be pairs of the scene, or repeat one");
+    }
+};
+
 /// An external engine exceeded its timeout and was killed; a type of its own, so that the other candidates still run.
 class engine_timeout : public aabb::input_error {
 public:
@@ -35,8 +51,8 @@ struct candidate {
     candidate_name name;
     std::function<std::unique_ptr<aabb::global_stage>(aabb::instrumentation)> make_global;
     std::function<std::unique_ptr<aabb::local_stage>(aabb::instrumentation)> make_local;  ///< empty for boxes
-    /// The times that an external engine reports, by frame, once `make_global` has run it; null if it is timed here.
-    std::shared_ptr<const std::vector<reported_times>> reported;
+    /// The output of an external engine, once `make_global` has run it; null if the candidate is timed here.
+    std::shared_ptr<external_output> reported;
     /// False where the broad phase sees parts of objects, whose pairs cannot be compared with pairs of whole objects.
     bool whole_boxes = true;
     bool exact_boxes = true;  ///< any false negative or positive among box pairs is a failure, not a measurement

@@ -204,7 +204,16 @@ scene_validation validate_scene(const scene_choice& choice, scene_frames& scene,
         }
         scene.take_results(truth.pairs(), truth.contacts());
     }
-    for (std::size_t i = 0; i < runners.size(); ++i) results[indices[i]] = runners[i].result();
+    for (std::size_t i = 0; i < runners.size(); ++i) {
+        validated_row& result = results[indices[i]];
+        result = runners[i].result();
+        const auto& output = candidates[indices[i]].reported;
+        if (!output) continue;
+        if (result.failure.empty() && output->faulty_rows > 0)
+            result.failure = text_of(result.name) + " has a wrong result on " + choice.kind + " (" +
+                             parameters_text(choice) + "): " + output->fault();
+        output->is_wrong = !result.failure.empty() || !result.differences.empty();
+    }
     return {scene.objects(), scene.frames(), truth.name(), truth_tally.digest(), std::move(results)};
 }
 
