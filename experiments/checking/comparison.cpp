@@ -1,35 +1,9 @@
 module aabblab.checking;
 
 import :comparison;
-import aabblab.pair_output;
+import :pair_sort;
 
 namespace aabblab {
-
-namespace {
-
-/// Sorts pairs by counting, by one id.
-/// @param ids above the greatest id
-void sort_by_id(std::span<const aabb::index_pair> pairs, std::uint32_t aabb::index_pair::*id, std::size_t ids,
-                std::span<aabb::index_pair> sorted) {
-    std::vector<std::size_t> begins(ids + 1);
-    for (const aabb::index_pair& pair : pairs) ++begins[pair.*id + 1];
-    std::partial_sum(begins.begin(), begins.end(), begins.begin());
-    for (const aabb::index_pair& pair : pairs) sorted[begins[pair.*id]++] = pair;
-}
-
-/// Sorts rows, in linear time if their ids are not much more than the rows: by b, then by a, in the order of b.
-/// @param ids of the scene; those of rows may be any
-void sort_rows_with_ids(std::span<aabb::index_pair> rows, std::size_t ids) {
-    // Ids that count from 1 are up to the number of objects.
-    const bool are_known =
-        std::ranges::all_of(rows, [&](const aabb::index_pair& row) { return row.a <= ids && row.b <= ids; });
-    if (!are_known || ids / 4 > rows.size()) return sort_rows(rows);
-    std::vector<aabb::index_pair> by_b(rows.size());
-    sort_by_id(rows, &aabb::index_pair::b, ids + 1, by_b);
-    sort_by_id(by_b, &aabb::index_pair::a, ids + 1, rows);
-}
-
-}  // namespace
 
 std::uint64_t check_result::false_positives() const {
     std::uint64_t sum = 0;
@@ -55,36 +29,48 @@ list_comparison::list_comparison(pair_list list, const list_extent& of)
         if (row.frame < of.frames) pairs_[next[row.frame]++] = row.pair;
 }
 
+/// Whether sorted rows are pairs that the scene can have, each once.
+bool list_comparison::are_pairs(std::span<const aabb::index_pair> rows) const {
+    bool holds = true;
+    for (std::size_t i = 0; i < rows.size(); ++i)
+        holds &= rows[i].a < of_.ids_a && rows[i].b < of_.ids_b && !(of_.is_symmetric && rows[i].a == rows[i].b) &&
+                 !(i > 0 && rows[i] == rows[i - 1]);
+    return holds;
+}
+
 /// Sorts the rows of the frame, and counts those that are not pairs of the scene, or repeat one.
 void list_comparison::take_frame() {
     rows_ = std::span(pairs_).subspan(begins_[frame_], begins_[frame_ + 1] - begins_[frame_]);
-    if (!std::ranges::is_sorted(rows_)) sort_rows_with_ids(rows_, std::max(of_.ids_a, of_.ids_b));
-    listed_.clear();
+    if (!std::ranges::is_sorted(rows_)) sort_pairs(rows_, std::max(of_.ids_a, of_.ids_b));
+    listed_ = rows_;
+    if (are_pairs(rows_)) return;
+    accepted_.clear();
     for (const aabb::index_pair& row : rows_) {
         if (row.a >= of_.ids_a || row.b >= of_.ids_b)
             ++result_.unknown_ids;
         else if (of_.is_symmetric && row.a == row.b)
             ++result_.self_pairs;
-        else if (!listed_.empty() && listed_.back() == row)
+        else if (!accepted_.empty() && accepted_.back() == row)
             ++result_.duplicates;
         else
-            listed_.push_back(row);
+            accepted_.push_back(row);
     }
+    listed_ = accepted_;
 }
 
 /// Compares two sorted lists.
 void list_comparison::find_errors(std::span<const aabb::index_pair> truth) {
     false_negatives_.clear();
     false_positives_.clear();
-    auto listed = listed_.cbegin();
+    auto listed = listed_.begin();
     for (const aabb::index_pair& pair : truth) {
-        for (; listed != listed_.cend() && *listed < pair; ++listed) false_positives_.push_back(*listed);
-        if (listed != listed_.cend() && *listed == pair)
+        for (; listed != listed_.end() && *listed < pair; ++listed) false_positives_.push_back(*listed);
+        if (listed != listed_.end() && *listed == pair)
             ++listed;
         else
             false_negatives_.push_back(pair);
     }
-    false_positives_.insert(false_positives_.end(), listed, listed_.cend());
+    false_positives_.insert(false_positives_.end(), listed, listed_.end());
 }
 
 void list_comparison::compare(std::span<const aabb::index_pair> truth, const observer& on_errors) {

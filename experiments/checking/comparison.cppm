@@ -40,6 +40,7 @@ public:
     [[nodiscard]] check_result result(std::vector<std::string> common) const;
 
 private:
+    [[nodiscard]] bool are_pairs(std::span<const aabb::index_pair> rows) const;
     void take_frame();
     void find_errors(std::span<const aabb::index_pair> truth);
 
@@ -49,8 +50,9 @@ private:
     check_result result_;
     list_explanation explanation_;
     std::uint32_t frame_ = 0;
-    std::span<aabb::index_pair> rows_;      // of this frame, sorted
-    std::vector<aabb::index_pair> listed_;  // of this frame, those that the scene can have, each once
+    std::span<aabb::index_pair> rows_;          // of this frame, sorted
+    std::span<const aabb::index_pair> listed_;  // of these, those that the scene can have, each once
+    std::vector<aabb::index_pair> accepted_;    // the same, if not all rows are
     std::vector<aabb::index_pair> false_negatives_, false_positives_;  // of this frame
 };
 

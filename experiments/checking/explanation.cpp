@@ -1,9 +1,9 @@
 module aabblab.checking;
 
 import :explanation;
+import :pair_sort;
 import aabblab.fmt;
 import aabblab.numbers;
-import aabblab.pair_output;
 
 namespace aabblab {
 
@@ -14,11 +14,11 @@ using aabb::index_pair;
 /// Whether the rows, each once and moved, are the ground truth.
 /// @param moved the pair that a row stands for
 template <class Moved>
-bool are_moved(const compared_frame& frame, bool is_symmetric, Moved moved) {
+bool are_moved(const compared_frame& frame, const list_extent& of, Moved moved) {
     if (frame.rows.size() < frame.truth.size()) return false;
     const auto pair_of = [&](const index_pair& row) {
         index_pair pair = moved(row);
-        if (is_symmetric && pair.a > pair.b) std::swap(pair.a, pair.b);
+        if (of.is_symmetric && pair.a > pair.b) std::swap(pair.a, pair.b);
         return pair;
     };
     // Of most lists that are not moved, a few rows show it.
@@ -27,7 +27,7 @@ bool are_moved(const compared_frame& frame, bool is_symmetric, Moved moved) {
     std::vector<index_pair> pairs;
     pairs.reserve(frame.rows.size());
     for (const index_pair& row : frame.rows) pairs.push_back(pair_of(row));
-    sort_rows(pairs);
+    sort_pairs(pairs, std::max(of.ids_a, of.ids_b));
     pairs.erase(std::ranges::unique(pairs).begin(), pairs.end());
     return std::ranges::equal(pairs, frame.truth);
 }
@@ -49,15 +49,15 @@ std::uint32_t exchanged_id(std::uint32_t id, index_pair objects) {
 }
 
 /// Whether the list of the frame is right with the ids of two objects exchanged.
-bool is_exchanged(const compared_frame& frame, index_pair objects) {
-    return are_moved(frame, /*is_symmetric=*/true, [objects](index_pair row) {
+bool is_exchanged(const compared_frame& frame, const list_extent& of, index_pair objects) {
+    return are_moved(frame, of, [objects](index_pair row) {
         return index_pair{exchanged_id(row.a, objects), exchanged_id(row.b, objects)};
     });
 }
 
 /// Every two objects whose exchange makes a wrong frame right. The first false positive u,v then stands for a false
 /// negative with u or v in it, whose other object is one of the two.
-std::vector<index_pair> exchanges_in(const compared_frame& frame) {
+std::vector<index_pair> exchanges_in(const compared_frame& frame, const list_extent& of) {
     constexpr std::size_t most_tried = 16;
     std::vector<index_pair> exchanges;
     if (frame.listed.size() != frame.truth.size()) return exchanges;
@@ -70,7 +70,7 @@ std::vector<index_pair> exchanges_in(const compared_frame& frame) {
         for (const auto [kept, moved] : {index_pair{u, v}, index_pair{v, u}}) {
             if ((lost.a != kept && lost.b != kept) || tried++ == most_tried) continue;
             const index_pair objects = aabb::ordered_pair(moved, lost.a == kept ? lost.b : lost.a);
-            if (is_exchanged(frame, objects)) exchanges.push_back(objects);
+            if (is_exchanged(frame, of, objects)) exchanges.push_back(objects);
         }
     return exchanges;
 }
@@ -111,25 +111,23 @@ void list_explanation::test_ids(const compared_frame& frame) {
     test(from_one_, [&] { return are_from_one(frame); });
     // The id -1 is `beyond_all`, and becomes 0.
     test(from_minus_one_, [&] {
-        return are_moved(frame, of_.is_symmetric, [](index_pair row) { return index_pair{row.a + 1, row.b + 1}; });
+        return are_moved(frame, of_, [](index_pair row) { return index_pair{row.a + 1, row.b + 1}; });
     });
     test(reversed_, [&] {
-        return !of_.is_symmetric && are_moved(frame, /*is_symmetric=*/false, [](index_pair row) {
-            return index_pair{row.b, row.a};
-        });
+        return !of_.is_symmetric && are_moved(frame, of_, [](index_pair row) { return index_pair{row.b, row.a}; });
     });
     test(mirrored_, [&] {
         const auto last_a = static_cast<std::uint32_t>(of_.ids_a - 1),
                    last_b = static_cast<std::uint32_t>(of_.ids_b - 1);
-        return are_moved(frame, of_.is_symmetric, [last_a, last_b](index_pair row) {
+        return are_moved(frame, of_, [last_a, last_b](index_pair row) {
             return index_pair{last_a - row.a, last_b - row.b};
         });
     });
     if (!of_.is_symmetric) return;
     if (exchanges_)
-        std::erase_if(*exchanges_, [&](index_pair objects) { return !is_exchanged(frame, objects); });
+        std::erase_if(*exchanges_, [&](index_pair objects) { return !is_exchanged(frame, of_, objects); });
     else if (frame.is_wrong)
-        exchanges_ = exchanges_in(frame);
+        exchanges_ = exchanges_in(frame, of_);
 }
 
 /// Tests whether the list is right in other frames.
