@@ -8,6 +8,7 @@ export import aabb.containment;
 export import aabb.costs;
 export import aabb.counters;
 export import aabb.digest;
+export import aabb.distance_stage;
 export import aabb.eigen;
 export import aabb.geometry;
 export import aabb.global_search;

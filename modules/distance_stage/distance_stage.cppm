@@ -23,10 +23,13 @@ public:
     /// @throws input_error on a mesh that `require_valid` rejects
     virtual std::uint32_t add_model(const mesh& m) = 0;
     /// @param pose_a,pose_b of full rank
-    /// @throws input_error as `require_ieee_arithmetic`, and if the nearest triangles lie in less than 2^-200 or in
-    /// more than 2^200 of a unit
+    /// @throws input_error as `require_ieee_arithmetic`, and if the distance or its points exceed the range of double
     [[nodiscard]] virtual mesh_distance distance(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b,
                                                  const pose& pose_b) = 0;
+    /// The same if the distance is certainly less than `most`, which takes less time; else nothing.
+    [[nodiscard]] virtual std::optional<mesh_distance> distance_below(std::uint32_t model_a, const pose& pose_a,
+                                                                      std::uint32_t model_b, const pose& pose_b,
+                                                                      double most) = 0;
     [[nodiscard]] virtual work_counters counters() const = 0;
 };
 

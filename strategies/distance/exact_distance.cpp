@@ -73,7 +73,39 @@ struct exact_vector {
     friend exact_vector operator-(const exact_vector& p, const exact_vector& q) noexcept {
         return {{p.at[0] - q.at[0], p.at[1] - q.at[1], p.at[2] - q.at[2]}};
     }
+    friend exact_vector operator+(const exact_vector& p, const exact_vector& q) noexcept {
+        return {{p.at[0] + q.at[0], p.at[1] + q.at[1], p.at[2] + q.at[2]}};
+    }
+    friend exact_vector operator*(const exact_vector& p, const Integer& factor) noexcept {
+        return {{p.at[0] * factor, p.at[1] * factor, p.at[2] * factor}};
+    }
 };
+
+/// A point of a feature: the vector over the denominator, which is positive.
+template <class Integer>
+struct exact_point {
+    exact_vector<Integer> numerator;
+    Integer denominator;
+};
+
+template <class Integer>
+scaled_double rounded_quotient(const Integer& numerator, const Integer& denominator, int unit) noexcept {
+    const auto [p, p_exponent] = numerator.rounded_magnitude();
+    const auto [q, q_exponent] = denominator.rounded_magnitude();
+    int exponent = 0;
+    const double mantissa = std::frexp(p / q, &exponent);
+    return {numerator.sign() < 0 ? -mantissa : mantissa, exponent + p_exponent - q_exponent + unit};
+}
+
+template <class Integer>
+vec3d rounded(const exact_point<Integer>& point, int unit) noexcept {
+    vec3d p{};
+    for (std::size_t k = 0; k < 3; ++k) {
+        const scaled_double x = rounded_quotient(point.numerator.at[k], point.denominator, unit);
+        p[static_cast<int>(k)] = std::ldexp(x.mantissa, x.exponent);
+    }
+    return p;
+}
 
 template <class Integer>
 Integer dot(const exact_vector<Integer>& p, const exact_vector<Integer>& q) noexcept {
@@ -98,35 +130,52 @@ public:
                             corners_[i].at[k] + Integer(term.magnitude, term.exponent - terms.unit, term.is_negative);
     }
 
-    /// Calls `take` with numerator and denominator of the squared distance of each pair of features, until it returns
-    /// true.
+    /// Calls `take` for each pair of features with numerator and denominator of their squared distance, and a function
+    /// that returns the nearest points of s and of t, until it returns true.
     /// @returns whether it did
     template <class Take>
-    bool each_squared_distance(const Take& take) const noexcept {
+    bool each_distance(const Take& take) const noexcept {
         for (std::size_t i = 0; i < 3; ++i)
             for (std::size_t j = 0; j < 3; ++j) {
                 const vector &a = corners_[i], &b = corners_[(i + 1) % 3];
                 const vector &c = corners_[3 + j], &e = corners_[3 + (j + 1) % 3];
-                if (corner_and_edge(a, c, e, take) || corner_and_edge(c, a, b, take) || edges(a, b, c, e, take))
+                if (corner_and_edge(a, c, e, take) || corner_and_edge(c, a, b, swapped(take)) ||
+                    edges(a, b, c, e, take))
                     return true;
             }
         for (std::size_t i = 0; i < 3; ++i)
-            if (corner_and_face(corners_[i], 3, take) || corner_and_face(corners_[3 + i], 0, take)) return true;
+            if (corner_and_face(corners_[i], 3, take) || corner_and_face(corners_[3 + i], 0, swapped(take)))
+                return true;
         return false;
     }
 
 private:
     using vector = exact_vector<Integer>;
+    using point = exact_point<Integer>;
+    using points = std::pair<point, point>;
+
+    static Integer one() noexcept { return Integer(1, 0, false); }
+
+    /// Passes the points on in the opposite order.
+    template <class Take>
+    static auto swapped(const Take& take) noexcept {
+        return [&take](const Integer& numerator, const Integer& denominator, const auto& nearest) {
+            return take(numerator, denominator, [&nearest] {
+                auto [second, first] = nearest();
+                return points{first, second};
+            });
+        };
+    }
 
     /// From a corner p to the beginning of an edge from a to b, and to its interior.
     template <class Take>
     static bool corner_and_edge(const vector& p, const vector& a, const vector& b, const Take& take) noexcept {
         const vector w = p - a, u = b - a;
-        if (take(dot(w, w), Integer(1, 0, false))) return true;
+        if (take(dot(w, w), one(), [&] { return points{{p, one()}, {a, one()}}; })) return true;
         const Integer along = dot(w, u), length = dot(u, u);
         if (along.sign() <= 0 || length <= along) return false;
         const vector x = cross(w, u);
-        return take(dot(x, x), length);
+        return take(dot(x, x), length, [&] { return points{{p, one()}, {a * length + u * along, length}}; });
     }
 
     /// Of the interiors of two edges that are not parallel, ab and ce. The nearest points a + s u and c + t v of their
@@ -138,9 +187,13 @@ private:
         const Integer square = dot(n, n);
         if (square.sign() == 0) return false;
         const auto is_inside = [&](const Integer& along) { return along.sign() >= 0 && along <= square; };
-        if (!is_inside(dot(cross(w, v), n)) || !is_inside(dot(cross(w, u), n))) return false;
+        const Integer along_u = dot(cross(w, v), n);
+        if (!is_inside(along_u)) return false;
+        const Integer along_v = dot(cross(w, u), n);
+        if (!is_inside(along_v)) return false;
         const Integer volume = dot(w, n);
-        return take(volume * volume, square);
+        return take(volume * volume, square,
+                    [&] { return points{{a * square + u * along_u, square}, {c * square + v * along_v, square}}; });
     }
 
     /// Of a corner and the interior of a face, whose first corner is given.
@@ -154,7 +207,8 @@ private:
         const Integer along_u = dot(cross(w, v), n), along_v = dot(cross(u, w), n);
         if (along_u.sign() < 0 || along_v.sign() < 0 || !(along_u + along_v <= square)) return false;
         const Integer volume = dot(w, n);
-        return take(volume * volume, square);
+        return take(volume * volume, square,
+                    [&] { return points{{p, one()}, {origin * square + u * along_u + v * along_v, square}}; });
     }
 
     std::array<vector, 6> corners_{};
@@ -162,8 +216,9 @@ private:
 
 /// Calls `compute` with features in integers that are wide enough. A coordinate of four terms below 2^end is below
 /// 2^(bits + 2), a difference 2^(bits + 3), a component of a normal 2^(2 bits + 7), a volume 2^(3 bits + 12), and its
-/// square, times that of nothing else, 2^(6 bits + 24); d² times a squared normal is below 2^(6 bits + 16). A sum or a
-/// product may take one limb more before its leading zeros are dropped. The greatest range is that of products of
+/// square, times that of nothing else, 2^(6 bits + 24); d² times a squared normal is below 2^(6 bits + 16), and the
+/// numerator of a nearest point, a corner times a squared normal and edges times as much, below 2^(5 bits + 22). A sum
+/// or a product may take one limb more before its leading zeros are dropped. The greatest range is that of products of
 /// doubles, from 2^-2148 to 2^2048.
 template <class Compute>
 auto in_integers(const pair_terms& terms, const Compute& compute) noexcept {
@@ -182,26 +237,27 @@ bool disjoint_triangles::are_within(double d) const noexcept {
                                   ? Integer()
                                   : Integer(terms.length.magnitude, terms.length.exponent - terms.unit, false);
         const Integer square = bound * bound;
-        return exact_features<Integer>(terms).each_squared_distance(
-            [&](const Integer& numerator, const Integer& denominator) { return numerator <= square * denominator; });
+        return exact_features<Integer>(terms).each_distance(
+            [&](const Integer& numerator, const Integer& denominator, const auto& /*nearest*/) {
+                return numerator <= square * denominator;
+            });
     });
 }
 
-/// Numerator and denominator are rounded once, and so is their quotient: 3.01 u are less than 2^-51.
-scaled_double disjoint_triangles::squared_distance() const noexcept {
+/// Numerators and denominators are rounded once, and so are their quotients: 3.01 u are less than 2^-51.
+nearest_of_triangles disjoint_triangles::nearest() const noexcept {
     const pair_terms terms(poses_, s_, t_, 0);
     return in_integers(terms, [&]<class Integer>(const Integer& /*zero*/) {
-        std::optional<scaled_double> least;
-        exact_features<Integer>(terms).each_squared_distance([&](const Integer& numerator, const Integer& denominator) {
-            const auto [p, p_exponent] = numerator.rounded_magnitude();
-            const auto [q, q_exponent] = denominator.rounded_magnitude();
-            int exponent = 0;
-            const double mantissa = std::frexp(p / q, &exponent);
-            const scaled_double quotient{mantissa, exponent + p_exponent - q_exponent + 2 * terms.unit};
-            if (!least || std::pair(quotient.exponent, quotient.mantissa) < std::pair(least->exponent, least->mantissa))
-                least = quotient;
+        std::optional<nearest_of_triangles> least;
+        const auto take = [&](const Integer& numerator, const Integer& denominator, const auto& nearest) {
+            const scaled_double squared = rounded_quotient(numerator, denominator, 2 * terms.unit);
+            const auto order = [](const scaled_double& x) { return std::pair(x.exponent, x.mantissa); };
+            if (least && !(order(squared) < order(least->squared))) return false;
+            const auto [p, q] = nearest();
+            least = nearest_of_triangles{squared, rounded(p, terms.unit), rounded(q, terms.unit)};
             return false;  // continues
-        });
+        };
+        static_cast<void>(exact_features<Integer>(terms).each_distance(take));
         return *least;
     });
 }

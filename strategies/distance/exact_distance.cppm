@@ -6,6 +6,12 @@ import aabb.std;
 
 export namespace aabb {
 
+/// The least distance of two triangles, squared, and points at which it is attained.
+struct nearest_of_triangles {
+    scaled_double squared{};  ///< with a relative error of at most 2^-51
+    vec3d p{}, q{};  ///< in the world; each coordinate with the same relative error, or off by the least double
+};
+
 /// Two disjoint closed triangles, zero-area ones included, in world coordinates R v + t that are not rounded.
 ///
 /// The nearest points of disjoint triangles lie in the interior of two features (corners, edges, faces) whose
@@ -26,8 +32,8 @@ public:
 
     /// Whether their distance is at most d, which is finite and not negative.
     [[nodiscard]] bool are_within(double d) const noexcept;
-    /// Their distance squared with a relative error of at most 2^-51.
-    [[nodiscard]] scaled_double squared_distance() const noexcept;
+    /// Their distance squared, and the points of the features that have it.
+    [[nodiscard]] nearest_of_triangles nearest() const noexcept;
 
 private:
     const pose_pair& poses_;

@@ -2,29 +2,53 @@
 export module aabb.distance.rounded_triangles;
 
 export import aabb.geometry;
+import aabb.simd;
 import aabb.std;
 
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)  // see aabb.base:floating_point
+
+namespace aabb::detail {
+
+// A comparison of doubles is one bit, one of eight doubles has a bit per lane.
+[[nodiscard]] inline std::uint32_t bits_where(bool holds) noexcept {
+    return holds ? 1 : 0;
+}
+template <class Flags>
+[[nodiscard]] inline std::uint32_t bits_where(Flags flags) noexcept {
+    return simd::bits_of_eight(flags);
+}
+
+}  // namespace aabb::detail
 
 export namespace aabb {
 
 /// Points of two triangles, and directions in which to separate these: along the segment between the points, and along
 /// the normal of the features on which they lie.
+template <class Number>
 struct near_points {
-    vec3d p, q;
-    vec3d normal{};  ///< n = u × v of two edges, or of the face's edges; 0 for a corner and an edge
-    double squared = std::numeric_limits<double>::infinity();  ///< of the distance between the points
+    vec3<Number> p{}, q{};
+    vec3<Number> normal{};  ///< n = u × v of two edges, or of the face's edges; 0 for a corner and an edge
+    Number squared = Number{} + std::numeric_limits<double>::infinity();  ///< of the distance between the points
 
     /// Replaces the points by nearer ones; NaN is never nearer.
-    inline void take(const vec3d& of_s, const vec3d& of_t, const vec3d& of_features) noexcept {
-        const vec3d between = of_s - of_t;
-        if (const double length = dot(between, between); length < squared) *this = {of_s, of_t, of_features, length};
+    /// @param excluded infinite where the points do not count, else 0
+    inline void take(const vec3<Number>& of_s, const vec3<Number>& of_t, const vec3<Number>& of_features,
+                     const Number& excluded) noexcept {
+        const vec3<Number> between = of_s - of_t;
+        const Number length = dot(between, between) + excluded;
+        const auto is_nearer = length < squared;
+        for (int k = 0; k < 3; ++k) {
+            p[k] = is_nearer ? of_s[k] : p[k];
+            q[k] = is_nearer ? of_t[k] : q[k];
+            normal[k] = is_nearer ? of_features[k] : normal[k];
+        }
+        squared = is_nearer ? length : squared;
     }
 };
 
-/// Two triangles of meshes at poses, rounded to double relative to a corner of the first. Whatever the nearest points
-/// are that rounded arithmetic yields, two facts about them bound the true distance D, and no algorithm that is less
-/// accurate makes the bounds wrong:
+/// Two triangles of meshes at poses, or eight pairs of triangles, rounded to double relative to a corner of the first.
+/// Whatever the nearest points are that rounded arithmetic yields, two facts about them bound the true distance D, and
+/// no algorithm that is less accurate makes the bounds wrong:
 /// - Two points of the triangles are no nearer than D: D <= |p - q|.
 /// - For any direction n, D >= h / |n|, where h is the least n·a over the corners a of one triangle, minus the
 ///   greatest n·b over those of the other.
@@ -41,56 +65,77 @@ struct near_points {
 /// 32 u W + 2.25 E covers both, the rounding of a sum with it, and terms of second order. W between 2^-200 and 2^200,
 /// and directions with a component of at least 2^-450, keep underflow, below 2^-1070 in a product, far below u W |n|;
 /// what overflows is infinite or NaN, and decides nothing.
-class rounded_triangles {
+/// @tparam Number double, or a vector of eight doubles, one per pair
+template <class Number>
+class rounded_pairs {
 public:
-    rounded_triangles(const pose_pair& poses, const triangle3d& s, const triangle3d& t) noexcept {
+    rounded_pairs(const pose_pair& poses, const triangle3<Number>& s, const triangle3<Number>& t) noexcept {
         if (poses.a == pose{} && poses.b == pose{}) {
-            set(s, t, /*error=*/0);
+            s_ = s;
+            t_ = t;
+            subtract_origin(/*error=*/Number{});
             return;
         }
-        vec3d error{};
+        vec3<Number> magnitudes{};
         const vec3d between = poses.b.translation - poses.a.translation;
-        triangle3d of_s{}, of_t{};
         for (int i = 0; i < 3; ++i) {
-            of_s[i] = placed(poses.a, {}, s[i], error);
-            of_t[i] = placed(poses.b, between, t[i], error);
+            s_[i] = placed(poses.a, {}, s[i], magnitudes);
+            t_[i] = placed(poses.b, between, t[i], magnitudes);
         }
-        set(of_s, of_t, error[0] + error[1] + error[2]);
+        subtract_origin(4.25 * unit * (magnitudes[0] + magnitudes[1] + magnitudes[2]) + 0x1p-1068);
     }
 
-    /// Whether the distance is at most d; nothing if rounding could change the result.
-    [[nodiscard]] std::optional<bool> are_within(double d) const noexcept {
-        if (!in_range_) return std::nullopt;
-        // Most triangles that are farther are so by their boxes, or seen along the normal of either.
-        if (gap_of_boxes() - tolerance_ > d) return false;
-        for (const triangle3d* const of : {&s_, &t_})
-            if (lower_bound(cross((*of)[1] - (*of)[0], (*of)[2] - (*of)[0])) > d) return false;
-        const near_points nearest = nearest_points();
-        if (upper_bound(nearest) <= d) return true;
-        if (lower_bound(nearest.p - nearest.q) > d || lower_bound(nearest.normal) > d) return false;
-        return std::nullopt;
+    /// Pairs whose distance is certainly at most d, and pairs whose distance is certainly greater: a bit per pair.
+    struct decision {
+        std::uint32_t within;
+        std::uint32_t farther;
+    };
+    [[nodiscard]] decision decide(double d) const noexcept {
+        // Most triangles that are farther are so by their boxes, or seen along the normal of either, and many that are
+        // not are so by their corners.
+        std::uint32_t open = in_range_ & ~detail::bits_where(gap_of_boxes() - tolerance_ > d);
+        for (const triangle3<Number>* const of : {&s_, &t_})
+            if (open != 0) open &= ~are_beyond(cross((*of)[1] - (*of)[0], (*of)[2] - (*of)[0]), d);
+        std::uint32_t within = 0;
+        if (open != 0) within = open & detail::bits_where(distance_of_corners() + tolerance_ <= d);
+        open &= ~within;
+        if (open != 0) {
+            const near_points<Number> nearest = nearest_points();
+            within |= open & detail::bits_where(upper_bound(nearest) <= d);
+            open &= ~within;
+            if (open != 0) open &= ~(are_beyond(nearest.p - nearest.q, d) | are_beyond(nearest.normal, d));
+        }
+        return {.within = within, .farther = in_range_ & ~(within | open)};
+    }
+
+    /// Whether the distance of the only pair is at most d; nothing if rounding could change the result.
+    [[nodiscard]] std::optional<bool> are_within(double d) const noexcept
+        requires std::same_as<Number, double>
+    {
+        const auto [within, farther] = decide(d);
+        return (within | farther) != 0 ? std::optional(within != 0) : std::nullopt;
     }
 
     /// False if numbers are so large or small that the bounds could be wrong.
-    [[nodiscard]] bool in_range() const noexcept { return in_range_; }
+    [[nodiscard]] bool in_range() const noexcept { return in_range_ != 0; }
 
     /// The bounds; `lower_bound` is negative if the direction separates nothing.
-    [[nodiscard]] double upper_bound(const near_points& nearest) const noexcept {
-        return std::sqrt(nearest.squared) + tolerance_;
+    [[nodiscard]] inline Number upper_bound(const near_points<Number>& nearest) const noexcept {
+        return __builtin_elementwise_sqrt(nearest.squared) + tolerance_;
     }
-    [[nodiscard]] double lower_bound(const vec3d& direction) const noexcept {
-        const double greatest = std::max({std::abs(direction[0]), std::abs(direction[1]), std::abs(direction[2])});
-        if (!(greatest >= 0x1p-450)) return -1;
-        const auto [s_low, s_high] = range_along(s_, direction);
-        const auto [t_low, t_high] = range_along(t_, direction);
-        const double gap = std::max(s_low - t_high, t_low - s_high);
-        return gap / std::sqrt(dot(direction, direction)) - tolerance_;
+    [[nodiscard]] inline Number lower_bound(const vec3<Number>& direction) const noexcept {
+        const Number greatest =
+            greater(greater(magnitude(direction[0]), magnitude(direction[1])), magnitude(direction[2]));
+        const range along_s = range_along(s_, direction), along_t = range_along(t_, direction);
+        const Number gap = greater(along_s.low - along_t.high, along_t.low - along_s.high);
+        const Number bound = gap / __builtin_elementwise_sqrt(dot(direction, direction)) - tolerance_;
+        return greatest >= 0x1p-450 ? bound : Number{} - 1.0;
     }
 
     /// The nearest points, up to rounding, of triangles that are disjoint: those of two edges, or of a corner and a
     /// face. Of triangles that intersect, some points.
-    [[nodiscard]] near_points nearest_points() const noexcept {
-        near_points nearest{};
+    [[nodiscard]] inline near_points<Number> nearest_points() const noexcept {
+        near_points<Number> nearest{};
         for (int i = 0; i < 3; ++i)
             for (int j = 0; j < 3; ++j) of_edges({s_[i], s_[(i + 1) % 3]}, {t_[j], t_[(j + 1) % 3]}, nearest);
         for (int i = 0; i < 3; ++i) {
@@ -101,100 +146,142 @@ public:
     }
 
     /// What coordinates are relative to, in the world: this point, and with poses the translation of the first besides.
-    [[nodiscard]] const vec3d& origin() const noexcept { return origin_; }
-    [[nodiscard]] double tolerance() const noexcept { return tolerance_; }
+    [[nodiscard]] const vec3<Number>& origin() const noexcept { return origin_; }
+    [[nodiscard]] const Number& tolerance() const noexcept { return tolerance_; }
 
 private:
     static constexpr double unit = std::numeric_limits<double>::epsilon() / 2;
 
     struct edge {
-        const vec3d& from;
-        const vec3d& to;
+        const vec3<Number>& from;
+        const vec3<Number>& to;
+    };
+    struct range {
+        Number low, high;
     };
 
-    /// R v + t in double.
-    /// @param error raised to the error bound of each coordinate, as derived for `posed_orientations`
-    [[nodiscard]] static vec3d placed(const pose& at, const vec3d& translation, const vec3d& v, vec3d& error) noexcept {
-        vec3d world{};
+    [[nodiscard]] static inline Number magnitude(const Number& x) noexcept { return __builtin_elementwise_abs(x); }
+    [[nodiscard]] static inline Number lesser(const Number& x, const Number& y) noexcept {
+        return __builtin_elementwise_min(x, y);
+    }
+    [[nodiscard]] static inline Number greater(const Number& x, const Number& y) noexcept {
+        return __builtin_elementwise_max(x, y);
+    }
+
+    /// R v + t in double. Errors of coordinates are bounded as derived for `posed_orientations`.
+    /// @param magnitudes raised to the sum of the terms' magnitudes on each axis
+    [[nodiscard]] static inline vec3<Number> placed(const pose& at, const vec3d& translation, const vec3<Number>& v,
+                                                    vec3<Number>& magnitudes) noexcept {
+        vec3<Number> world{};
         for (int k = 0; k < 3; ++k) {
             const auto row = static_cast<std::size_t>(3 * k);
-            const double x = at.rotation[row] * v[0], y = at.rotation[row + 1] * v[1], z = at.rotation[row + 2] * v[2];
+            const Number x = at.rotation[row] * v[0], y = at.rotation[row + 1] * v[1], z = at.rotation[row + 2] * v[2];
             world[k] = x + y + z + translation[k];
-            const double bound =
-                4.25 * unit * (std::abs(x) + std::abs(y) + std::abs(z) + std::abs(translation[k])) + 0x1p-1070;
-            error[k] = std::max(error[k], bound);
+            magnitudes[k] =
+                greater(magnitudes[k], magnitude(x) + magnitude(y) + magnitude(z) + std::abs(translation[k]));
         }
         return world;
     }
 
-    void set(const triangle3d& s, const triangle3d& t, double error) noexcept {
-        origin_ = s[0];
-        double width = 0;
+    /// Makes coordinates relative to a corner.
+    /// @param error bounds that of a corner, summed over the axes
+    inline void subtract_origin(const Number& error) noexcept {
+        origin_ = s_[0];
+        Number width{};
         for (int k = 0; k < 3; ++k) {
-            double greatest = 0;
+            Number greatest{};
             for (int i = 0; i < 3; ++i) {
-                s_[i][k] = s[i][k] - origin_[k];
-                t_[i][k] = t[i][k] - origin_[k];
-                greatest = std::max({greatest, std::abs(s_[i][k]), std::abs(t_[i][k])});
+                s_[i][k] -= origin_[k];
+                t_[i][k] -= origin_[k];
+                greatest = greater(greatest, greater(magnitude(s_[i][k]), magnitude(t_[i][k])));
             }
             width += greatest;
         }
         tolerance_ = 32 * unit * width + 2.25 * error;
-        // After an overflow of a coordinate, its error bound is infinite.
-        in_range_ = width >= 0x1p-200 && width <= 0x1p200 && tolerance_ <= 0x1p200;
+        // After an overflow of a coordinate, its error bound is infinite; without poses, `width` is, or is NaN.
+        in_range_ = detail::bits_where(width >= 0x1p-200) & detail::bits_where(width <= 0x1p200) &
+                    detail::bits_where(tolerance_ <= 0x1p200);
+    }
+
+    /// Pairs whose distance is more than d, as seen along a direction.
+    [[nodiscard]] inline std::uint32_t are_beyond(const vec3<Number>& direction, double d) const noexcept {
+        return detail::bits_where(lower_bound(direction) > d);
     }
 
     /// The distance of the triangles' boxes, with errors as `lower_bound` has them.
-    [[nodiscard]] double gap_of_boxes() const noexcept {
-        vec3d gaps{};
+    [[nodiscard]] inline Number gap_of_boxes() const noexcept {
+        Number sum{};
         for (int k = 0; k < 3; ++k) {
-            const auto [s_low, s_high] = std::minmax({s_[0][k], s_[1][k], s_[2][k]});
-            const auto [t_low, t_high] = std::minmax({t_[0][k], t_[1][k], t_[2][k]});
-            gaps[k] = std::max({0.0, s_low - t_high, t_low - s_high});
+            const Number s_low = lesser(lesser(s_[0][k], s_[1][k]), s_[2][k]);
+            const Number t_low = lesser(lesser(t_[0][k], t_[1][k]), t_[2][k]);
+            const Number s_high = greater(greater(s_[0][k], s_[1][k]), s_[2][k]);
+            const Number t_high = greater(greater(t_[0][k], t_[1][k]), t_[2][k]);
+            const Number gap = greater(Number{}, greater(s_low - t_high, t_low - s_high));
+            sum += gap * gap;
         }
-        return std::sqrt(dot(gaps, gaps));
+        return __builtin_elementwise_sqrt(sum);
     }
 
-    [[nodiscard]] static std::pair<double, double> range_along(const triangle3d& t, const vec3d& direction) noexcept {
-        return std::minmax({dot(direction, t[0]), dot(direction, t[1]), dot(direction, t[2])});
+    /// The least distance of two corners.
+    [[nodiscard]] inline Number distance_of_corners() const noexcept {
+        Number least = Number{} + std::numeric_limits<double>::infinity();
+        for (int i = 0; i < 3; ++i)
+            for (int j = 0; j < 3; ++j) {
+                const vec3<Number> between = s_[i] - t_[j];
+                least = lesser(least, dot(between, between));
+            }
+        return __builtin_elementwise_sqrt(least);
     }
 
-    [[nodiscard]] static vec3d along(const vec3d& from, const vec3d& by, double factor) noexcept {
+    [[nodiscard]] static inline range range_along(const triangle3<Number>& t, const vec3<Number>& direction) noexcept {
+        const Number x = dot(direction, t[0]), y = dot(direction, t[1]), z = dot(direction, t[2]);
+        return {.low = lesser(lesser(x, y), z), .high = greater(greater(x, y), z)};
+    }
+
+    [[nodiscard]] static inline vec3<Number> along(const vec3<Number>& from, const vec3<Number>& by,
+                                                   const Number& factor) noexcept {
         return {from[0] + by[0] * factor, from[1] + by[1] * factor, from[2] + by[2] * factor};
+    }
+
+    /// A number from 0 to 1; 0 for NaN.
+    [[nodiscard]] static inline Number clamped(const Number& x) noexcept {
+        return x > 0.0 ? lesser(x, Number{} + 1.0) : Number{};
     }
 
     /// The nearest points of two edges: those of their lines, clamped to one edge and then to the other (Ericson,
     /// "Real-time collision detection", 2005, section 5.1.9).
-    static void of_edges(const edge& e, const edge& f, near_points& nearest) noexcept {
-        const vec3d u = e.to - e.from, v = f.to - f.from, w = f.from - e.from;
-        const double uu = dot(u, u), vv = dot(v, v), uv = dot(u, v), uw = dot(u, w), vw = dot(v, w);
-        const double determinant = uu * vv - uv * uv;
-        const auto clamped = [](double x) { return x > 0 ? std::min(x, 1.0) : 0.0; };  // 0 for NaN
-        double of_e = clamped(determinant > 0 ? (uw * vv - vw * uv) / determinant : 0);
-        double of_f = vv > 0 ? (of_e * uv - vw) / vv : 0;
-        if (of_f < 0 || of_f > 1) {
-            of_f = clamped(of_f);
-            of_e = clamped(uu > 0 ? (of_f * uv + uw) / uu : 0);
-        }
-        nearest.take(along(e.from, u, of_e), along(f.from, v, of_f), cross(u, v));
+    static inline void of_edges(const edge& e, const edge& f, near_points<Number>& nearest) noexcept {
+        const vec3<Number> u = e.to - e.from, v = f.to - f.from, w = f.from - e.from;
+        const Number uu = dot(u, u), vv = dot(v, v), uv = dot(u, v), uw = dot(u, w), vw = dot(v, w);
+        const Number determinant = uu * vv - uv * uv;
+        const Number of_e = clamped(determinant > 0.0 ? (uw * vv - vw * uv) / determinant : Number{});
+        const Number of_f = vv > 0.0 ? (of_e * uv - vw) / vv : Number{};
+        const Number end_of_f = clamped(of_f);
+        const Number beside_end = clamped(uu > 0.0 ? (end_of_f * uv + uw) / uu : Number{});
+        nearest.take(along(e.from, u, of_f == end_of_f ? of_e : beside_end), along(f.from, v, end_of_f), cross(u, v),
+                     /*excluded=*/Number{});
     }
 
     /// The projection of a corner to the other triangle's plane, if it lies in that triangle.
-    static void of_corner_and_face(const vec3d& corner, const triangle3d& face, bool corner_is_of_s,
-                                   near_points& nearest) noexcept {
-        const vec3d u = face[1] - face[0], v = face[2] - face[0], w = corner - face[0];
-        const vec3d n = cross(u, v);
-        const double square = dot(n, n);
-        const double of_u = dot(cross(w, v), n) / square, of_v = dot(cross(u, w), n) / square;
-        if (!(of_u >= 0 && of_v >= 0 && of_u + of_v <= 1)) return;  // also if the face has no area
-        const vec3d projection = along(along(face[0], u, of_u), v, of_v);
-        corner_is_of_s ? nearest.take(corner, projection, n) : nearest.take(projection, corner, n);
+    static inline void of_corner_and_face(const vec3<Number>& corner, const triangle3<Number>& face,
+                                          bool corner_is_of_s, near_points<Number>& nearest) noexcept {
+        const vec3<Number> u = face[1] - face[0], v = face[2] - face[0], w = corner - face[0];
+        const vec3<Number> n = cross(u, v);
+        const Number square = dot(n, n);
+        const Number of_u = dot(cross(w, v), n) / square, of_v = dot(cross(u, w), n) / square;
+        // Points of a face without area are infinite or NaN, and never nearer.
+        const Number least = lesser(lesser(of_u, of_v), 1.0 - (of_u + of_v));
+        const Number excluded = least >= 0.0 ? Number{} : Number{} + std::numeric_limits<double>::infinity();
+        const vec3<Number> projection = along(along(face[0], u, of_u), v, of_v);
+        corner_is_of_s ? nearest.take(corner, projection, n, excluded) : nearest.take(projection, corner, n, excluded);
     }
 
-    triangle3d s_{}, t_{};  // relative to `origin_`
-    vec3d origin_{};
-    double tolerance_ = 0;
-    bool in_range_ = false;
+    triangle3<Number> s_{}, t_{};  // relative to `origin_`
+    vec3<Number> origin_{};
+    Number tolerance_{};
+    std::uint32_t in_range_ = 0;  // a bit per pair
 };
+
+using rounded_triangles = rounded_pairs<double>;
 
 }  // namespace aabb

@@ -16,18 +16,22 @@ export namespace aabb {
                               : orientation_test<posed_orientations>::intersects(poses, s, t);
 }
 
+/// Whether two closed triangles have points at a distance of at most d, in integers.
+[[nodiscard]] inline bool are_within_unrounded(const pose_pair& poses, const triangle3d& s, const triangle3d& t,
+                                               double d) noexcept {
+    return triangles_meet(poses, s, t) || (d > 0 && disjoint_triangles(poses, s, t).are_within(d));
+}
+
 /// Whether two closed triangles have points at a distance of at most d, in real arithmetic: corners lie at R v + t, for
 /// vertices and poses as they are given. Triangles that intersect have distance 0; zero-area ones are segments or
-/// points. Rounded bounds decide first (`rounded_triangles`), then exact integers (`disjoint_triangles`). The caller
-/// must have called `require_ieee_arithmetic`.
+/// points. Rounded bounds decide first (`rounded_pairs`), then exact integers (`disjoint_triangles`). The caller must
+/// have called `require_ieee_arithmetic`.
 /// @param poses of full rank
 /// @param d finite and not negative
 [[nodiscard]] inline bool are_within(const pose_pair& poses, const triangle3d& s, const triangle3d& t,
                                      double d) noexcept {
-    const rounded_triangles rounded(poses, s, t);
-    if (const std::optional<bool> known = rounded.are_within(d)) return *known;
-    if (triangles_meet(poses, s, t)) return true;
-    return d > 0 && disjoint_triangles(poses, s, t).are_within(d);
+    const std::optional<bool> known = rounded_triangles(poses, s, t).are_within(d);
+    return known ? *known : are_within_unrounded(poses, s, t, d);
 }
 [[nodiscard]] inline bool are_within(const triangle3d& s, const triangle3d& t, double d) noexcept {
     return are_within(pose_pair{}, s, t, d);
@@ -42,9 +46,9 @@ struct measured_distance {
 };
 
 /// Measures the distance of two triangles. Where rounded bounds cannot exclude that the triangles intersect, or are
-/// wide as for long triangles that almost meet, exact arithmetic narrows them.
-/// @param most if the distance is certainly not less, only `lower` is set, and `upper` is infinite
-/// @throws input_error if the triangles lie in less than 2^-200 or in more than 2^200, unless they intersect
+/// wide as for long triangles that almost meet, and where numbers are too large or too small for them, exact arithmetic
+/// decides. Beyond the range of double, the distance and points are infinite.
+/// @param most if the distance is certainly not less, `upper` may be infinite, and only `lower` be set besides
 [[nodiscard]] measured_distance measured(const pose_pair& poses, const triangle3d& s, const triangle3d& t, double most);
 
 }  // namespace aabb

@@ -1,9 +1,10 @@
 /// Pairs of triangles of two meshes that are nearer than a given distance, through their trees.
 export module aabb.distance.within_detection;
 
-export import aabb.distance.near_walk;
+export import aabb.distance.nearest_pairs;
 export import aabb.pipeline;
 import aabb.distance.box_gap;
+import aabb.distance.near_batch;
 import aabb.distance.triangle_distance;
 import aabb.std;
 
@@ -32,28 +33,27 @@ public:
     void all_pairs(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b, const pose& pose_b,
                    std::vector<index_pair>& pairs) {
         append_guard guard(pairs);
-        each_pair(model_a, pose_a, model_b, pose_b, [&](index_pair pair) {
-            pairs.push_back(pair);
-            return false;  // continues
-        });
+        each_pair(model_a, pose_a, model_b, pose_b, [&](index_pair pair) { pairs.push_back(pair); });
         guard.keep();
     }
     [[nodiscard]] std::optional<index_pair> first_pair(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b,
                                                        const pose& pose_b) {
+        const model<Tree>&a = models_[model_a], &b = models_[model_b];
+        const pose_pair poses{pose_a, pose_b};
         std::optional<index_pair> first;
-        each_pair(model_a, pose_a, model_b, pose_b, [&](index_pair pair) {
-            first = pair;
-            return true;  // stops
-        });
+        pairs_.find(
+            a, pose_a, b, pose_b, /*nearest_first=*/true, [this] { return d_; },
+            [&](std::uint32_t s, std::uint32_t t) {
+                if (are_within(poses, a.triangles().given_triangle(s), b.triangles().given_triangle(t), d_))
+                    first = index_pair{s, t};
+                return first.has_value();
+            });
         return first;
     }
     [[nodiscard]] std::uint64_t count_pairs(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b,
                                             const pose& pose_b) {
         std::uint64_t count = 0;
-        each_pair(model_a, pose_a, model_b, pose_b, [&](index_pair) {
-            ++count;
-            return false;  // continues
-        });
+        each_pair(model_a, pose_a, model_b, pose_b, [&](index_pair) { ++count; });
         return count;
     }
     /// @throws input_error always
@@ -66,7 +66,7 @@ public:
     [[nodiscard]] tree_validation validate_tree(std::uint32_t model) const {
         return validate(models_[model].tree(), models_[model].triangles());
     }
-    [[nodiscard]] const Counters& counters() const noexcept { return walk_.counters(); }
+    [[nodiscard]] Counters counters() const noexcept { return pairs_.counters(); }
 
     /// Heap bytes of the trees' nodes and indices, the traversal's stack, and the scratch memory of refits.
     [[nodiscard]] std::vector<part_bytes> bytes() const {
@@ -77,7 +77,7 @@ public:
         }
         return {{"nodes", trees.nodes},
                 {"indices", trees.indices},
-                {"stack", walk_.bytes()},
+                {"stack", pairs_.bytes()},
                 {"refit", bytes_of(refitted_)}};
     }
 
@@ -88,18 +88,20 @@ public:
     }
 
 private:
-    /// Passes each pair (a of A, b of B) to `take`, until it returns true.
+    /// Passes each pair (a of A, b of B) to `take`.
     template <class Take>
     void each_pair(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b, const pose& pose_b,
                    const Take& take) {
         const model<Tree>&a = models_[model_a], &b = models_[model_b];
         const pose_pair poses{pose_a, pose_b};
-        walk_.find(
-            a, pose_a, b, pose_b, [limit = square_not_below(d_)] { return limit; },
-            [&](std::uint32_t s, std::uint32_t t) {
-                return are_within(poses, a.triangles().given_triangle(s), b.triangles().given_triangle(t), d_) &&
-                       take(index_pair{s, t});
-            });
+        batch_.clear();
+        const auto collect = [&](std::uint32_t s, std::uint32_t t) {
+            batch_.add({s, t}, a.triangles().given_triangle(s), b.triangles().given_triangle(t));
+            if (batch_.is_full()) batch_.decide(poses, d_, take);
+            return false;  // continues
+        };
+        pairs_.find(a, pose_a, b, pose_b, /*nearest_first=*/false, [this] { return d_; }, collect);
+        batch_.decide(poses, d_, take);
     }
 
     [[noreturn]] static void reject_self() {
@@ -110,7 +112,8 @@ private:
     [[no_unique_address]] Build build_;
     Tree tree_;  // without nodes
     std::deque<model<Tree>> models_;
-    near_walk<Tree, Counters> walk_;
+    nearest_pairs<Tree, Counters> pairs_;
+    near_batch batch_;
     std::vector<box> refitted_;  // scratch memory for refits
 };
 

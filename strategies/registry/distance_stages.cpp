@@ -18,6 +18,11 @@ public:
                                          const pose& pose_b) override {
         return detection_.distance(model_a, pose_a, model_b, pose_b);
     }
+    [[nodiscard]] std::optional<mesh_distance> distance_below(std::uint32_t model_a, const pose& pose_a,
+                                                              std::uint32_t model_b, const pose& pose_b,
+                                                              double most) override {
+        return detection_.distance_below(model_a, pose_a, model_b, pose_b, most);
+    }
     [[nodiscard]] work_counters counters() const override { return work_of(detection_.counters()); }
 
 private:
@@ -44,6 +49,10 @@ std::unique_ptr<local_stage> compose_within(const composition& c, double d, inst
             using detection = within_detection<tree_builder, Tree, Counters>;
             return std::make_unique<detected_by<detection>>(detection(d, builder, tree));
         });
+}
+
+near_stages compose_near(const composition& c, double d, instrumentation counted) {
+    return {std::make_unique<grown_stage>(compose_global_search(c, counted), d), compose_within(c, d, counted)};
 }
 
 std::unique_ptr<distance_stage> compose_distance(const composition& c, instrumentation counted) {

@@ -15,6 +15,15 @@ export namespace aabb {
 [[nodiscard]] std::unique_ptr<local_stage> compose_within(const composition& c, double d,
                                                           instrumentation counted = instrumentation::none);
 
+/// Both stages of a composition, for the triangles of objects at a distance of at most d: a broad phase of grown boxes
+/// (`grown_stage`) and the narrow phase of `compose_within`.
+struct near_stages {
+    std::unique_ptr<global_stage> global;
+    std::unique_ptr<local_stage> local;
+};
+/// @throws input_error as `compose_within`, and on an invalid composition
+[[nodiscard]] near_stages compose_near(const composition& c, double d, instrumentation counted = instrumentation::none);
+
 /// A `distance_detection` that measures distances of meshes through trees of the composition's build and tree.
 /// @throws input_error on an unknown build or tree
 [[nodiscard]] std::unique_ptr<distance_stage> compose_distance(const composition& c,

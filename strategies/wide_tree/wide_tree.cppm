@@ -1,7 +1,9 @@
-/// The interface of trees with eight children per node, for layouts and for planning fronts. The rest is internal.
+/// The interface of trees with eight children per node, for layouts, other walks and planning fronts. The rest is
+/// internal.
 export module aabb.wide_tree;
 
 export import aabb.wide_tree.front_walk;
+export import aabb.wide_tree.gap_walk;
 export import aabb.wide_tree.wide_node;
 
 import aabb.std;

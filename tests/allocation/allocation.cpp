@@ -5,6 +5,9 @@
 #include "../meshes.hpp"
 #include "counted_new.hpp"
 
+import aabb.distance;
+import aabb.distance_stages;
+
 using namespace aabb;
 
 namespace {
@@ -77,6 +80,41 @@ TEST_CASE("local detection allocates nothing in steady state") {
                 stage->each_self_pair(model, [&](index_pair) { return ++visited == 0; });
                 if (visited == 0) std::abort();
                 stage->refit(model);
+            }
+        }
+        const std::size_t new_allocations = allocations.made - before;
+        CHECK(new_allocations == 0);
+        CHECK_FALSE(pairs.empty());
+    }
+}
+
+TEST_CASE("distances allocate nothing in steady state") {
+    const std::vector<box> boxes = orbiting(0);
+    within_stage near_boxes(global_of(composed({{strategy_kind::sort, "insertion"}})), 3);
+    for (std::uint32_t id = 0; id < boxes.size(); ++id) near_boxes.insert(id);
+    for (const strategy_info& tree : strategies(strategy_kind::tree)) {
+        CAPTURE(tree.name);
+        const aabb::composition c = composed({{strategy_kind::tree, tree.name.c_str()}});
+        mesh m = ripples(6);
+        const auto near = compose_within(c, 2);
+        const auto model = near->add_model(m);
+        const auto measured = compose_distance(c);
+        measured->add_model(m);
+        std::vector<index_pair> pairs;
+        std::size_t before = 0;
+        for (int round = 0; round < 2; ++round) {
+            if (round == 1) before = allocations.made;
+            for (int step = 0; step < 5; ++step) {
+                const pose moved = shifted({0.3 * step, 0.2, 2.25});
+                pairs.clear();
+                near->all_pairs(model, {}, model, moved, pairs);
+                if (!near->first_pair(model, {}, model, moved)) std::abort();
+                if (near->count_pairs(model, {}, model, moved) != pairs.size()) std::abort();
+                near->refit(model);
+                if (measured->distance(0, {}, 0, moved).distance > 2) std::abort();
+                pairs.clear();
+                near_boxes.update(boxes);
+                near_boxes.search(pairs);
             }
         }
         const std::size_t new_allocations = allocations.made - before;

@@ -4,6 +4,7 @@
 #include <vector>
 
 import aabb;
+import aabb.distance_stages;
 import aabb.partition.columns;
 import aabb.registry;
 import aabb.sort.bucket;
@@ -42,6 +43,13 @@ int main() {
     std::vector<aabb::index_pair> pairs;
     detection->all_pairs(model, {}, model, moved, pairs);
     std::printf("%zu triangle pairs\n", pairs.size());
+
+    // All 16 pairs are within 1.5, and the meshes meet.
+    const auto near = aabb::compose_within({}, 1.5);
+    near->add_model(tetrahedron);
+    const auto distances = aabb::compose_distance({});
+    distances->add_model(tetrahedron);
+    if (near->count_pairs(0, {}, 0, moved) != 16 || distances->distance(0, {}, 0, moved).distance != 0) return 1;
 
     // What is compiled here takes vectors as wide as those of the library does, whatever the flags.
     const std::vector<aabb::index_pair> found = pairs_of(*aabb::compose_global_search({}, aabb::instrumentation::none));

@@ -159,26 +159,27 @@ TEST_CASE("one unit in the last place decides whether boxes are within a distanc
     CHECK(are_within(nearer, high, 1, box_metric::axis));
 }
 
-TEST_CASE("grown boxes of floats overlap where the boxes are within the distance, at any magnitude") {
-    REQUIRE(rc::check([] {
-        const auto any_float = [] {
-            const auto bits = *rc::gen::arbitrary<std::uint32_t>();
-            const float x = std::bit_cast<float>(bits);
-            return std::isfinite(x) ? x : 1.0F;
-        };
-        float low = any_float(), high = any_float();
-        if (low > high) std::swap(low, high);
-        const box a{{low, 0, 0}, {low, 0, 0}}, b{{high, 0, 0}, {high, 0, 0}};
-        const double gap = double{high} - double{low};
-        double d = gap;
+TEST_CASE("grown boxes overlap where the boxes are within the distance, also if bounds were rounded to float before") {
+    std::size_t margins_needed = 0;
+    REQUIRE(rc::check([&] {
+        const double size = std::ldexp(1.0, *rc::gen::inRange(-140, 120));
+        const double low = uniform(-size, size) + uniform(-size, size) * 0x1p-30;
+        const double way = uniform(0.0, size) + uniform(0.0, size) * 0x1p-30;
+        const double high = low + std::ldexp(way, -*rc::gen::inRange(0, 40));
+        const boxd a{{low, 0, 0}, {low, 0, 0}}, b{{high, 0, 0}, {high, 0, 0}};
+        double d = high - low;
         while (!are_within(a, b, d)) d = std::nextafter(d, std::numeric_limits<double>::max());
-        RC_ASSERT(overlaps(grown(a, d), grown(b, d)));
-        const boxd a_in_double{{low, 0, 0}, {low, 0, 0}}, b_in_double{{high, 0, 0}, {high, 0, 0}};
-        RC_ASSERT(grown(a_in_double, d).overlaps(grown(b_in_double, d)));
-        // They grow by little more.
-        RC_ASSERT(d > 1e300 ||
-                  grown(a, d).max[0] - double{low} <= d / 2 + 0x1p-19 * (std::abs(double{low}) + d) + 0x1p-140);
+        const auto rounded = [](double x) { return static_cast<float>(x); };
+        const box a_in_floats{{rounded(low), 0, 0}, {rounded(low), 0, 0}};
+        const box b_in_floats{{rounded(high), 0, 0}, {rounded(high), 0, 0}};
+        RC_ASSERT(overlaps(grown(a_in_floats, d), grown(b_in_floats, d)));
+        RC_ASSERT(grown(a, d).overlaps(grown(b, d)));
+        // They grow by little more, which some need whose bounds were rounded.
+        RC_ASSERT(double{grown(a_in_floats, d).max[0]} - low <= d / 2 + 0x1p-19 * (std::abs(low) + d) + 0x1p-140);
+        RC_ASSERT(grown(a, d).max[0] - low <= d / 2 + 0x1p-48 * (std::abs(low) + d) + 0x1p-1060);
+        margins_needed += rounded(rounded(low) + d / 2) < rounded(rounded(high) - d / 2);
     }));
+    CHECK(margins_needed > 0);
 }
 
 TEST_CASE("within a distance, boxes are rejected as they are without") {
@@ -224,6 +225,137 @@ TEST_CASE("through every tree, pairs are exactly the triangles within a distance
             if (first) RC_ASSERT(std::ranges::find(truth, *first) != truth.end());
         }
     }));
+}
+
+TEST_CASE("whole nodes leave out no triangle within a distance") {
+    // Large enough for several levels of nodes; floats and doubles, near and far, at rotations and at other poses.
+    const mesh sheet = ripples(12), in_double = in_doubles(ripples(12), 1);
+    const mesh cubes = [] {
+        mesh m;
+        for (std::uint32_t i = 0; i < 40; ++i)
+            for (const auto& t : std::vector(tetrahedron(0.4F).triangles)) {
+                const vec3f at{static_cast<float>(i % 8), static_cast<float>(i >> 3U), 0};
+                const auto corner = [&](std::size_t v) { return tetrahedron(0.4F).vertices[t[v]] + at; };
+                add_triangle(m, corner(0), corner(1), corner(2));
+            }
+        return m;
+    }();
+    const pose turned = turned_by({1, 0.2, -0.1, 0.3}, {3, -2, 1.5});
+    pose stretched = turned;
+    for (double& r : stretched.rotation) r *= 2;
+    std::size_t found = 0;
+    for (const auto& [a, b] : {std::pair(&sheet, &cubes), std::pair(&sheet, &in_double), std::pair(&cubes, &sheet)})
+        for (const pose_pair& poses :
+             {pose_pair{{}, shifted({0.5, 0.25, 1.5})}, pose_pair{turned, {}}, pose_pair{turned, stretched},
+              pose_pair{shifted({1e6, 0, 0}), shifted({1e6, 0.5, 3})}, pose_pair{{}, shifted({40, 0, 0})}})
+            for (const double d : {0.0, 0.3, 1.7, 25.0}) {
+                const std::vector<index_pair> truth = expected(*a, *b, poses, d);
+                found += truth.size();
+                for (const char* tree : {"implicit", "implicit:vertices=fetched", "canonical"}) {
+                    CAPTURE(tree, d);
+                    const auto stage = compose_within(composed({{strategy_kind::tree, tree}}), d);
+                    stage->add_model(*a);
+                    stage->add_model(*b);
+                    std::vector<index_pair> pairs;
+                    stage->all_pairs(0, poses.a, 1, poses.b, pairs);
+                    CHECK(sorted(pairs) == truth);
+                }
+            }
+    CHECK(found > 10000);
+}
+
+TEST_CASE("every tree measures the same distance of meshes with several levels of nodes, and finds a pair within it") {
+    const auto in_units = [](mesh m, double unit) {
+        std::vector<vec3d> vertices;
+        for (const vec3f& v : m.vertices) vertices.push_back({0.1 * unit * v[0], 0.1 * unit * v[1], 0.1 * unit * v[2]});
+        set_vertices(m, vertices);
+        return m;
+    };
+    // The last two have frames of another scale.
+    const mesh sheet = ripples(30), in_double = in_units(ripples(20), 1), tiny = in_units(ripples(20), 0x1p-120),
+               huge = in_units(ripples(20), 0x1p120);
+    REQUIRE(tiny.frame.scale != 1);
+    REQUIRE(huge.frame.scale != 1);
+    const std::array<std::tuple<const mesh*, const mesh*, double>, 5> cases{{{&sheet, &in_double, 1},
+                                                                             {&in_double, &sheet, 1},
+                                                                             {&sheet, &sheet, 1},
+                                                                             {&tiny, &tiny, 0x1p-120},
+                                                                             {&huge, &huge, 0x1p120}}};
+    std::size_t apart = 0;
+    REQUIRE(rc::check([&] {
+        const auto [a, b, size] = cases[*rc::gen::inRange<std::size_t>(0, cases.size())];
+        const double far = *rc::gen::element(1.0, 30.0, 300.0);
+        pose_pair poses{any_turned(any_vector(far * size)), any_turned(any_vector(far * size))};
+        if (*rc::gen::inRange(0, 4) == 0)
+            for (double& r : poses.b.rotation) r *= 1.5;
+        std::optional<mesh_distance> first;
+        for (const char* tree : {"canonical", "implicit", "implicit:vertices=fetched", "quantized"}) {
+            RC_LOG(std::string(tree));
+            const aabb::composition c = composed({{strategy_kind::tree, tree}});
+            const auto stage = compose_distance(c);
+            stage->add_model(*a);
+            stage->add_model(*b);
+            const mesh_distance found = stage->distance(0, poses.a, 1, poses.b);
+            if (!first) first = found;
+            RC_ASSERT(std::abs(found.distance - first->distance) <= found.error + first->error);
+            RC_ASSERT(found.error <= 0x1p-38 * (far + 100) * size);
+            const auto any_within = [&](double d) {
+                const auto within = compose_within(c, d);
+                within->add_model(*a);
+                within->add_model(*b);
+                return within->first_pair(0, poses.a, 1, poses.b).has_value();
+            };
+            RC_ASSERT(any_within(found.distance + found.error));
+            const double below = found.distance - found.error;
+            RC_ASSERT(below <= 0 || !any_within(std::nextafter(below, 0.0)));
+            apart += below > 0;
+        }
+    }));
+    CHECK(apart > 100);
+}
+
+TEST_CASE("the least and the greatest distances decide as any other") {
+    constexpr double least = std::numeric_limits<double>::denorm_min(), most = std::numeric_limits<double>::max();
+    const mesh a = ripples(9), b = in_doubles(ripples(9), 0);
+    for (const double d : {0.0, least, 1e-300, 1e-30, 1e30, 1e300, most})
+        for (const double apart : {0.0, 0x1p-40, 1e3}) {
+            const pose_pair poses{{}, shifted({0, 0, apart})};
+            const std::vector<index_pair> truth = expected(a, b, poses, d);
+            CHECK((d > 1 ? truth.size() == a.triangles.size() * b.triangles.size() : truth.empty() == (apart > 1)));
+            for (const strategy_info& tree : strategies(strategy_kind::tree)) {
+                CAPTURE(tree.name, d, apart);
+                const auto stage = compose_within(composed({{strategy_kind::tree, tree.name.c_str()}}), d);
+                stage->add_model(a);
+                stage->add_model(b);
+                std::vector<index_pair> pairs;
+                stage->all_pairs(0, poses.a, 1, poses.b, pairs);
+                CHECK(sorted(pairs) == truth);
+            }
+        }
+}
+
+TEST_CASE("after vertices have moved, refitted trees find the triangles within a distance, and the distance") {
+    for (const strategy_info& tree : strategies(strategy_kind::tree)) {
+        CAPTURE(tree.name);
+        const aabb::composition c = composed({{strategy_kind::tree, tree.name.c_str()}});
+        mesh moving = ripples(10);
+        const mesh still = ripples(10);
+        const auto stage = compose_within(c, 0.5);
+        stage->add_model(moving);
+        stage->add_model(still);
+        const pose_pair poses{{}, shifted({0, 0, 3})};
+        std::vector<index_pair> pairs;
+        stage->all_pairs(0, poses.a, 1, poses.b, pairs);
+        const std::vector<index_pair> before = expected(moving, still, poses, 0.5);
+        CHECK(sorted(pairs) == before);
+        for (vec3f& v : moving.vertices) v[2] += 0.25F * v[0];
+        stage->refit(0);
+        pairs.clear();
+        stage->all_pairs(0, poses.a, 1, poses.b, pairs);
+        const std::vector<index_pair> after = expected(moving, still, poses, 0.5);
+        CHECK(sorted(pairs) == after);
+        CHECK(after.size() > before.size());
+    }
 }
 
 TEST_CASE("a box moved to the world contains its vertices as the poses place them") {
@@ -361,6 +493,54 @@ TEST_CASE("through every tree, the distance of two meshes lies within its error 
     }));
     CHECK(meeting > 20);
     CHECK(apart > 20);
+}
+
+TEST_CASE("a distance below a length is found exactly where there is one") {
+    const mesh a = ripples(8), b = in_doubles(ripples(8), 0);
+    for (const strategy_info& tree : strategies(strategy_kind::tree)) {
+        CAPTURE(tree.name);
+        const auto stage = compose_distance(composed({{strategy_kind::tree, tree.name.c_str()}}));
+        stage->add_model(a);
+        stage->add_model(b);
+        for (const double height : {1e-9, 2.5, 40.0}) {
+            const pose above = turned_by({1, 0.1, 0.2, 0}, {0, 0, height + 6});
+            const mesh_distance found = stage->distance(0, {}, 1, above);
+            REQUIRE(found.distance > 0);
+            const double beyond = found.distance + 4 * found.error;
+            CHECK_FALSE(stage->distance_below(0, {}, 1, above, found.distance - 2 * found.error).has_value());
+            CHECK_FALSE(stage->distance_below(0, {}, 1, above, 0).has_value());
+            const auto below = stage->distance_below(0, {}, 1, above, beyond);
+            REQUIRE(below.has_value());
+            CHECK(std::abs(below->distance - found.distance) <= below->error + found.error);
+        }
+        CHECK(stage->distance_below(0, {}, 0, {}, 1e-300)->distance == 0);
+    }
+}
+
+TEST_CASE("distances far below and above one are measured, and what exceeds the range of double is rejected") {
+    for (const double size : {0x1p-1060, 1e-300, 1e-62, 1e62, 1e300}) {
+        CAPTURE(size);
+        mesh m = tetrahedron(1);
+        pose small, beside;
+        for (pose* const p : {&small, &beside})
+            for (std::size_t k = 0; k < 3; ++k) p->rotation[4 * k] = size;
+        beside.translation = {4 * size, -4 * size, 0};
+        const auto stage = compose_distance(composed({}));
+        stage->add_model(m);
+        // From (1, 0, 0) to (4, -3, 0), in units of the size.
+        const mesh_distance found = stage->distance(0, small, 0, beside);
+        CHECK(std::abs(found.distance - std::sqrt(18.0) * size) <= 1e-14 * size + found.error);
+        CHECK(found.error <= 1e-14 * size + 1e-323);
+        CHECK(std::abs(found.point_a[0] - size) <= found.point_error);
+        CHECK(std::abs(found.point_b[1] + 3 * size) <= found.point_error);
+        CHECK(found.point_error <= 1e-13 * size + 1e-320);
+    }
+    mesh m = tetrahedron(1);
+    const auto stage = compose_distance(composed({}));
+    stage->add_model(m);
+    constexpr double most = std::numeric_limits<double>::max();
+    CHECK_REFUSED(stage->distance(0, shifted({-most, 0, 0}), 0, shifted({most, 0, 0})),
+                  "the distance of the meshes, or where it is, exceeds the range of double");
 }
 
 TEST_CASE("a detector composed at compile time finds triangles and boxes within a distance") {

@@ -7,7 +7,9 @@
 
 import aabb.distance;
 import aabb.distance.exact_distance;
+import aabb.distance.near_batch;
 import aabb.distance.rounded_triangles;
+import aabb.simd;
 
 // Distances compared with a judge in integers of any size.
 
@@ -123,11 +125,16 @@ bool decides_well(generator& g, const pose_pair& poses, const triangle3d& s, con
         counted.decided += known.has_value();
     }
     if (judge.compare(0) == 0) return true;
-    const auto [mantissa, exponent] = aabb::disjoint_triangles(poses, s, t).squared_distance();
+    const auto [mantissa, exponent] = aabb::disjoint_triangles(poses, s, t).nearest().squared;
     const double root = exponent % 2 == 0 ? std::ldexp(std::sqrt(mantissa), exponent / 2)
                                           : std::ldexp(std::sqrt(2 * mantissa), (exponent - 1) / 2);
     const double truth = judge.rounded();
     return truth < 0x1p-1000 || truth > 0x1p1000 || std::abs(root - truth) <= 0x1p-50 * truth;
+}
+
+/// Whether a point lies within an error of a triangle, in exact arithmetic.
+bool is_near(const vec3d& point, const pose& at, const triangle3d& t, double error) {
+    return judged({{}, at}, {{point, point, point}}, t).compare(error) <= 0;
 }
 
 }  // namespace
@@ -160,6 +167,92 @@ TEST_CASE("pairs of triangles are within a distance exactly where integers say s
     }
     CHECK(tallies["none"].equal > tallies["none"].pairs / 4);
     CHECK(tallies["a translation"].equal > tallies["a translation"].pairs / 4);
+}
+
+TEST_CASE("eight pairs at once are decided as each alone, and as integers say") {
+    generator g(568);
+    std::size_t decided = 0, pairs = 0;
+    for (int i = 0; i < 400; ++i) {
+        const auto& made = pose_classes[static_cast<std::size_t>(i) % pose_classes.size()];
+        const pose_pair poses = made.make(g, step(g));
+        std::array<triangle3d, 8> s{}, t{};
+        aabb::triangle3<aabb::simd::eight_doubles> of_s{}, of_t{};
+        aabb::near_batch batch;
+        const std::size_t count = i % 4 == 0 ? 1 + static_cast<std::size_t>(i) / 4 % 8 : 8;  // of pairs in the batch
+        for (std::uint32_t lane = 0; lane < 8; ++lane) {
+            const auto pattern = static_cast<std::size_t>(triangle_pairs::integer(g, 0, 8));
+            const auto placement = static_cast<std::size_t>(triangle_pairs::integer(g, 0, 6));
+            const auto pair = triangle_pairs::of_type<double>(
+                triangle_pairs::placed<double>(g, triangle_pairs::patterned(g, pattern), placement));
+            s[lane] = pair.a;
+            t[lane] = pair.b;
+            for (int c = 0; c < 3; ++c)
+                for (int k = 0; k < 3; ++k) {
+                    of_s[c][k][lane] = s[lane][c][k];
+                    of_t[c][k][lane] = t[lane][c][k];
+                }
+        }
+        const double judged_distance = judged(poses, s[0], t[0]).rounded();
+        const bool is_of_first = triangle_pairs::integer(g, 0, 2) > 0 && judged_distance < 1e300;
+        const double d = is_of_first ? judged_distance : real(g) + 1;
+        const auto [within, farther] = aabb::rounded_pairs<aabb::simd::eight_doubles>(poses, of_s, of_t).decide(d);
+        std::vector<aabb::index_pair> expected, found;
+        for (std::uint32_t lane = 0; lane < 8; ++lane) {
+            const std::optional<bool> alone = aabb::rounded_triangles(poses, s[lane], t[lane]).are_within(d);
+            CHECK((within >> lane & 1U) == (alone == true ? 1U : 0U));
+            CHECK((farther >> lane & 1U) == (alone == false ? 1U : 0U));
+            decided += alone.has_value();
+            ++pairs;
+            if (lane >= count) continue;
+            batch.add({lane, 2 * lane}, s[lane], t[lane]);
+            if (judged(poses, s[lane], t[lane]).compare(d) <= 0) expected.push_back({lane, 2 * lane});
+        }
+        CHECK(batch.is_full() == (count == 8));
+        const auto take = [&](aabb::index_pair pair) { found.push_back(pair); };
+        batch.decide(poses, d, take);
+        batch.decide(poses, d, take);  // it is empty
+        CHECK(found == expected);
+    }
+    CHECK(decided > pairs / 2);
+    CHECK(decided < pairs);
+}
+
+TEST_CASE("measured distances lie within their bounds at any size, and so do the points") {
+    generator g(567);
+    std::size_t apart = 0, meeting = 0, by_integers = 0;
+    for (int i = 0; i < 6000; ++i) {
+        const auto c = static_cast<std::size_t>(i) % pose_classes.size();
+        triangle_pairs::pair pair =
+            triangle_pairs::patterned(g, static_cast<std::size_t>(i) / 6 % triangle_pairs::patterns.size());
+        const vec3d by = step(g);
+        if (i % 2 == 0)
+            for (auto& corner : pair[1])
+                for (std::size_t k = 0; k < 3; ++k) corner[k] += by[static_cast<int>(k)];
+        const auto placement = static_cast<std::size_t>(triangle_pairs::integer(g, 0, 6));
+        if (triangle_pairs::placements[placement] == "largest") continue;  // distances may exceed the range of double
+        const auto [s, t] = triangle_pairs::of_type<double>(triangle_pairs::placed<double>(g, pair, placement));
+        const pose_pair poses = pose_classes[c].make(g, by);
+        CAPTURE(i, pose_classes[c].name, triangle_pairs::placements[placement]);
+        const distance_judge judge = judged(poses, s, t);
+        const aabb::measured_distance found = measured(poses, s, t, /*most=*/std::numeric_limits<double>::infinity());
+        CHECK(judge.compare(found.upper) <= 0);
+        CHECK(judge.compare(found.lower) >= 0);
+        CHECK((found.lower <= found.value && found.value <= found.upper));
+        CHECK((found.upper == 0) == (judge.compare(0) == 0));
+        CHECK(is_near(found.p, poses.a, s, found.point_error));
+        CHECK(is_near(found.q, poses.b, t, found.point_error));
+        const distance_judge of_points = judged({}, {{found.p, found.p, found.p}}, {{found.q, found.q, found.q}});
+        constexpr double most = std::numeric_limits<double>::max();
+        CHECK(of_points.compare(std::nextafter(found.value + found.point_error, most)) <= 0);
+        CHECK(of_points.compare(std::nextafter(std::max(0.0, found.value - found.point_error), 0.0)) >= 0);
+        ++(found.upper == 0 ? meeting : apart);
+        by_integers += found.upper > 0 && found.upper - found.lower <= 0x1p-48 * found.value;
+        // What is certainly not nearer is left out.
+        CHECK(judge.compare(measured(poses, s, t, found.lower).lower) >= 0);
+    }
+    CHECK(apart > 1000);
+    CHECK(meeting > 300);
+    CHECK(by_integers > 100);
 }
 
 TEST_CASE("triangles whose coordinates span the range of double are within a distance where integers say so") {

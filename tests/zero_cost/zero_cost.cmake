@@ -51,6 +51,8 @@ function(check_symbols)
              filtered_search box_index)
     left_out(both_stages selected divided_scene local_stage neighbour_list split_mesh canonical_tree depth_first_walk
              strategy_choice)
+    # Distances, which are only measured where they are asked for.
+    left_out(both_stages by_name within_detection distance_detection disjoint_triangles)
     # The engines, which nothing of the library has.
     foreach(program boxes_only both_stages selected by_name)
         symbols_of(${program} own)
