@@ -20,7 +20,7 @@ struct contacts_request {
     std::vector<std::string> meshes;
     method_options method{{aabb::stage::global_search, aabb::stage::local_detection}};
     filter_files filter;
-    std::optional<std::string> out, draw, frame;
+    std::optional<std::string> out, intervals, draw, frame;
     std::optional<double> within;
     bool touching = true, geometry = false, json = false;
 };
@@ -65,7 +65,18 @@ std::optional<hit_drawing> open_drawing(const contacts_request& request) {
     require_other_file(*request.draw, request.motion);
     require_no_mesh(*request.draw, request.meshes);
     if (request.out) require_two_files("--out", *request.out, "--draw", *request.draw);
+    if (request.intervals) require_two_files("--intervals", *request.intervals, "--draw", *request.draw);
     return std::optional<hit_drawing>(std::in_place, *request.draw, "--draw");
+}
+
+/// Opens a file for rows, which must not overwrite an input.
+std::optional<number_table> open_rows(const contacts_request& request, const std::optional<std::string>& file,
+                                      std::string_view columns) {
+    if (!file) return std::nullopt;
+    require_other_file(*file, request.motion);
+    require_no_filter(*file, request.filter);
+    require_no_mesh(*file, request.meshes);
+    return std::optional<number_table>(std::in_place, *file, columns);
 }
 
 /// The frame of --frame, by default the first.
@@ -86,24 +97,22 @@ void find_contacts(const contacts_request& request) {
         require_no_triangle_test(choice);
         choice.within = nearness{*request.within};
     }
-    std::optional<number_table> rows;
-    if (request.out) {
-        require_other_file(*request.out, request.motion);
-        require_no_filter(*request.out, request.filter);
-        require_no_mesh(*request.out, request.meshes);
-        std::string columns = "frame,object_a,object_b,triangle_a,triangle_b";
-        if (request.geometry) columns += "," + std::string(intersection_columns);
-        rows.emplace(*request.out, columns);
-    }
+    if (request.out && request.intervals) require_two_files("--out", *request.out, "--intervals", *request.intervals);
+    std::string columns = "frame,object_a,object_b,triangle_a,triangle_b";
+    if (request.geometry) columns += "," + std::string(intersection_columns);
+    std::optional<number_table> rows = open_rows(request, request.out, columns);
+    std::optional<number_table> interval_rows = open_rows(request, request.intervals, contact_intervals::columns);
     std::optional<hit_drawing> drawing = open_drawing(request);
     scene_frames scene(open_motion(request.motion, read_meshes(request.meshes)), request.motion);
     scene.filter_by(read_filter(request.filter, scene.objects()));
     std::optional<frame_drawing> drawn;
     if (drawing) drawn.emplace(frame_of(request, scene.frames()), *drawing);
+    std::optional<contact_intervals> intervals;
+    if (interval_rows) intervals.emplace(scene, choice.named, *interval_rows);
     search_method method = method_of(choice, traits_of(scene));
-    const frames_result result =
-        search_frames(scene, method, rows ? &*rows : nullptr,
-                      {.touching = request.touching, .geometry = request.geometry}, drawn ? &*drawn : nullptr);
+    const frames_result result = search_frames(
+        scene, method, {rows ? &*rows : nullptr, drawn ? &*drawn : nullptr, intervals ? &*intervals : nullptr},
+        {.touching = request.touching, .geometry = request.geometry});
     if (drawing) drawing->commit();
     print(request.json ? json_of(request, method, result) : text_of(request, method, result));
 }
@@ -126,6 +135,10 @@ void add_contacts(const command_parser& program) {
     add_filter_options(command, &request.filter);
     command.option("--out FILE", &request.out,
                    "CSV file for the contacts: rows frame,object_a,object_b,triangle_a,triangle_b");
+    command.option("--intervals FILE", &request.intervals,
+                   "CSV file for when objects are in contact: for each pair of objects a row per interval of frames in "
+                   "contact, with one of the first contacts, and the nearest frame before, with the distance; the "
+                   "nearest frame after the last contact has a row of its own");
     command.flag("--geometry", &request.geometry,
                  "Add to each contact the triangles' intersection, in world coordinates: columns kind, number of "
                  "vertices, error bounds on x, y, z, vertices");

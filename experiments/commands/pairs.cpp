@@ -26,6 +26,10 @@ struct pairs_request {
     bool swept = false, json = false;
 };
 
+bool is_by_axis(const pairs_request& request) {
+    return request.metric == aabb::box_metric::axis;
+}
+
 /// The result of --json: totals over all frames, and the time of each frame.
 std::string json_of(const pairs_request& request, const search_method& method, const frames_result& result) {
     nlohmann::ordered_json summary = {
@@ -33,17 +37,20 @@ std::string json_of(const pairs_request& request, const search_method& method, c
         {"ms", result.ms},           {"method", method.name},      {"exact", method.exact}};
     summary["exact_for"] = nullptr;
     if (method.exact) summary["exact_for"] = "the recorded boxes";
-    if (request.within) summary["within"] = *request.within;
+    if (request.within) {
+        summary["within"] = *request.within;
+        summary["metric"] = is_by_axis(request) ? "axis" : "euclidean";
+    }
     return summary.dump() + "\n";
 }
 
 /// The result for reading: totals over all frames, and the mean time per frame.
 std::string text_of(const pairs_request& request, const search_method& method, const frames_result& result) {
     std::string text =
-        fmt::format("{}{}: {}, {}\n{}{}, digest {}\n", visible(request.recording), filter_text(request.filter),
+        fmt::format("{}{}: {}, {}\n{}{}{}, digest {}\n", visible(request.recording), filter_text(request.filter),
                     counted(result.objects, "object"), counted(result.ms.size(), "frame"),
                     counted(result.pairs, request.within ? "pair" : "overlapping pair"), text_of_within(request.within),
-                    result.digest);
+                    is_by_axis(request) ? " on each axis" : "", result.digest);
     // The mean, not the median: a Verlet list is rebuilt in few frames and reused in all others.
     if (!result.ms.empty())
         text += fmt::format("{}: {:.4g} ms per frame (mean, with frame 0)\n", method.text(), result.mean_ms());
@@ -69,7 +76,7 @@ void find_pairs(const pairs_request& request) {
         require_no_filter(*request.out, request.filter);
         rows.emplace(*request.out, "frame,a,b");
     }
-    const frames_result result = search_frames(scene, method, rows ? &*rows : nullptr);
+    const frames_result result = search_frames(scene, method, {.rows = rows ? &*rows : nullptr});
     print(request.json ? json_of(request, method, result) : text_of(request, method, result));
 }
 

@@ -30,15 +30,6 @@ hit_geometry geometry_of(const scene_frames& scene, const aabb::contact& c) {
     return {mesh_of(c.a), scene.poses()[c.a], mesh_of(c.b), scene.poses()[c.b]};
 }
 
-/// Lets the broad phase find the boxes that are near each other; without a narrow phase, exactly those.
-void search_within(stages& searching, const nearness& within) {
-    if (searching.local)
-        searching.global = std::make_unique<aabb::grown_stage>(std::move(searching.global), within.d);
-    else
-        searching.global = std::make_unique<aabb::within_stage>(std::move(searching.global), within.d, within.metric,
-                                                                within.in_double);
-}
-
 class scene_in_floats final : public aabb::box_scene {
 public:
     explicit scene_in_floats(std::unique_ptr<aabb::box_scene> scene) : scene_(std::move(scene)) {}
@@ -103,7 +94,9 @@ search_method method_of(const search_choice& choice, const aabb::scene_traits& t
             aabb::composition named = c;
             named[aabb::strategy_kind::triangle] = {"distance", {}};
             method.name += (method.name.empty() ? "" : ", ") + to_text(named, stage);
-            method.run_stages.local = aabb::compose_within(c, choice.within->d);
+            aabb::near_stages near = aabb::compose_near(c, choice.within->d);
+            method.run_stages.local = std::move(near.local);
+            if (method.run_stages.global) method.run_stages.global = std::move(near.global);
             continue;
         }
         const bool by_engine = choice.engine && stage == choice.stages.back();
@@ -117,7 +110,9 @@ search_method method_of(const search_choice& choice, const aabb::scene_traits& t
                 by_engine ? aabb::make_mesh_engine(*choice.engine) : aabb::compose_local_detection(c, uncounted);
     }
     if (choice.within && method.run_stages.global) {
-        search_within(method.run_stages, *choice.within);
+        if (!method.run_stages.local)
+            method.run_stages.global = std::make_unique<aabb::within_stage>(
+                std::move(method.run_stages.global), choice.within->d, choice.within->metric, choice.within->in_double);
         // What the filter keeps from the search is found where boxes overlap, which is too near.
         method.filtered = aabb::filtering::late;
     }
@@ -125,11 +120,10 @@ search_method method_of(const search_choice& choice, const aabb::scene_traits& t
 }
 
 /// Searches every frame, and sums up times and results; moves the stages out of `method`.
-/// @param rows receives every result and is committed at the end; may be null
 /// @param hits which pairs of triangles are reported, and whether with their intersection
-/// @param drawing receives the objects and contacts of its frame; may be null
-frames_result search_frames(scene_frames& scene, search_method& method, number_table* rows, const hit_choice& hits,
-                            frame_drawing* drawing) {
+frames_result search_frames(scene_frames& scene, search_method& method, const frame_outputs& to,
+                            const hit_choice& hits) {
+    const auto [rows, drawing, intervals] = to;
     const bool meshes = scene.meshes() != nullptr;
     frames_result result;
     result.objects = scene.objects();
@@ -166,11 +160,13 @@ frames_result search_frames(scene_frames& scene, search_method& method, number_t
             if (rows)
                 for (const auto [a, b] : frame.pairs) rows->add({frame.number, a, b});
         }
+        if (intervals) intervals->add(frame.number, contacts);
         totals.add(frame.pairs, contacts);
         result.object_pairs += count_object_pairs(contacts);
         shown.update(frame.number + 1);
     });
     if (rows) rows->commit();
+    if (intervals) intervals->write();
     result.pairs = totals.candidates();
     result.contacts = totals.contacts().value_or(0);
     result.kinds = wanted.counts();

@@ -112,12 +112,40 @@ struct frames_result {
         return std::accumulate(ms.begin(), ms.end(), 0.0) / static_cast<double>(ms.size());
     }
 };
+/// Records in which frames objects are in contact, where, and how near they come before: for each pair of objects a row
+/// per interval of frames in contact, with the frames apart before it, and one for frames apart after the last.
+class contact_intervals {
+public:
+    static constexpr std::string_view columns =
+        "object_a,object_b,nearest_frame,distance,error,first_frame,last_frame,triangle_a,triangle_b,x,y,z,point_error";
+
+    /// @param named the strategies of the trees through which distances are measured
+    /// @param scene,rows must outlive this object
+    /// @throws aabb::input_error if there are too many pairs of objects
+    contact_intervals(const scene_frames& scene, const aabb::named_strategies& named, number_table& rows);
+    ~contact_intervals();
+
+    /// Adds the scene's current frame.
+    /// @param contacts sorted; the others' objects are apart
+    void add(std::uint32_t frame, std::span<const aabb::contact> contacts);
+    /// Writes and commits the rows, once.
+    void write();
+
+private:
+    struct state;
+    std::unique_ptr<state> state_;
+};
+
+/// What a search of frames fills besides its result; each may be null.
+struct frame_outputs {
+    number_table* rows = nullptr;            ///< receives frame and pair, or frame, objects and triangles; is committed
+    frame_drawing* drawing = nullptr;        ///< receives the objects and contacts of one frame
+    contact_intervals* intervals = nullptr;  ///< receives the contacts of every frame, and writes them
+};
 /// Searches every frame of a scene.
-/// @param rows receives frame and pair, or frame, objects and triangles, and is committed; may be null
-/// @param drawing receives the objects and contacts of one frame; may be null
 /// @throws defect if a result is found twice.
-[[nodiscard]] frames_result search_frames(scene_frames& scene, search_method& method, number_table* rows,
-                                          const hit_choice& hits = {}, frame_drawing* drawing = nullptr);
+[[nodiscard]] frames_result search_frames(scene_frames& scene, search_method& method, const frame_outputs& to,
+                                          const hit_choice& hits = {});
 
 /// The scene with swept boxes: each is the box of an object in this frame and in the previous one, so that objects that
 /// meet on a straight way between the two overlap.

@@ -1,5 +1,6 @@
 #include <catch2/generators/catch_generators.hpp>
 
+#include "csv_rows.hpp"
 #include "program_json.hpp"
 
 #include "mesh_bytes.hpp"
@@ -104,4 +105,78 @@ TEST_CASE_METHOD(in_folder, "contacts finds the contacts of a scene in its motio
     const auto summary = json_of({"contacts", motion, shapes[0], shapes[1], "--json"});
     CHECK(summary["contacts"] > 20);
     CHECK(holds(validated, "digest " + summary["digest"].get<std::string>()));
+}
+
+TEST_CASE_METHOD(with_mesh_file, "contacts --intervals says when objects are in contact, where, and how near before") {
+    // Object 1 comes from 3 to 0.5, leaves, touches at 1 and leaves; the legs of a tetrahedron are 1 long.
+    std::string motion = "0 0 1 0 0 0 0 1 0 0 0 0 1 0\n0 2 1 0 0 0 0 1 0 90 0 0 1 0\n";
+    int frame = 0;
+    for (const char* x : {"3", "1.5", "0.5", "0.75", "2", "1.25", "1", "3"})
+        motion += std::to_string(frame++) + " 1 1 0 0 " + x + " 0 1 0 0 0 0 1 0\n";
+    const std::string file = folder.write("m.txt", motion);
+    const auto rows_with = [&](const std::vector<std::string>& options) {
+        run_well(joined({"contacts", file, mesh, "--intervals", folder / "i.csv"}, options));
+        return csv_rows(folder / "i.csv");
+    };
+    using row = std::map<std::string, std::string>;
+    const auto number = [](const row& of, const std::string& column) { return std::stod(of.at(column)); };
+    const auto check_nearest = [&](const row& of, const std::string& at, double distance) {
+        CHECK(of.at("nearest_frame") == at);
+        CHECK(std::abs(number(of, "distance") - distance) <= number(of, "error"));
+        CHECK(number(of, "error") < 1e-12);
+    };
+    const auto objects_of = [](const row& of) { return of.at("object_a") + of.at("object_b"); };
+    for (const std::vector<std::string>& method : std::vector<std::vector<std::string>>{
+             {}, {"--tree", "compressed", "--sort", "shell", "--partition", "none"}, {"--engine", "cgal"}}) {
+        CAPTURE(method);
+        const std::vector<row> rows = rows_with(method);
+        REQUIRE(rows.size() == 5);
+        for (std::size_t i = 0; i < 3; ++i) CHECK(objects_of(rows[i]) == "01");
+        check_nearest(rows[0], "1", 0.5);
+        CHECK(rows[0].at("first_frame") == "2");
+        CHECK(rows[0].at("last_frame") == "3");
+        CHECK(number(rows[0], "x") >= 0.5 - number(rows[0], "point_error"));
+        check_nearest(rows[1], "5", 0.25);
+        CHECK(rows[1].at("first_frame") == "6");
+        CHECK(rows[1].at("last_frame") == "6");
+        CHECK(std::abs(number(rows[1], "x") - 1) <= number(rows[1], "point_error"));
+        CHECK(std::abs(number(rows[1], "y")) <= number(rows[1], "point_error"));
+        CHECK(number(rows[1], "point_error") < 1e-13);
+        check_nearest(rows[2], "7", 2);
+        CHECK(rows[2].at("first_frame").empty());
+        CHECK(rows[2].at("point_error").empty());
+        // Object 2 is never in contact: 90 along y, where legs of 1 end.
+        CHECK(objects_of(rows[3]) == "02");
+        check_nearest(rows[3], "0", 89);
+        CHECK(rows[3].at("first_frame").empty());
+        CHECK(objects_of(rows[4]) == "12");
+        CHECK(rows[4].at("nearest_frame") == "2");
+    }
+    // What only touches is apart.
+    const std::vector<row> crossing = rows_with({"--touching", "no"});
+    REQUIRE(crossing.size() == 4);
+    check_nearest(crossing[1], "6", 0);
+    // Within a distance, earlier and later.
+    const std::vector<row> near = rows_with({"--within", "0.5"});
+    REQUIRE(near.size() == 5);
+    check_nearest(near[0], "0", 2);
+    CHECK(near[0].at("first_frame") == "1");
+    CHECK(near[0].at("last_frame") == "3");
+    CHECK(std::abs(number(near[0], "x") - 1) <= number(near[0], "point_error"));
+    CHECK(near[1].at("first_frame") == "5");
+    // Contact from the first frame on, and to the last.
+    const std::string always = folder.write("s.txt", "0 0 1 0 0 0 0 1 0 0 0 0 1 0\n0 1 1 0 0 0.5 0 1 0 0 0 0 1 0\n");
+    run_well({"contacts", always, mesh, "--intervals", folder / "i.json"});
+    const auto json = nlohmann::json::parse(bytes_of_file(folder / "i.json"));
+    REQUIRE(json["rows"].size() == 1);
+    CHECK(json["rows"][0].size() == json["columns"].size());
+    CHECK(json["rows"][0][2].is_null());
+    CHECK(json["rows"][0][5] == 0);
+    // A filter leaves pairs out.
+    const std::string except = folder.write("e.csv", "a,b\n0,1\n");
+    CHECK(rows_with({"--except", except}).size() == 2);
+    CHECK(holds(run_program({"contacts", file, mesh, "--intervals", folder / "i.npy"}).err, "integers only"));
+    CHECK(run_program({"contacts", file, mesh, "--intervals", file}).status == 2);
+    CHECK(run_program({"contacts", file, mesh, "--intervals", folder / "i.csv", "--out", folder / "i.csv"}).status ==
+          2);
 }

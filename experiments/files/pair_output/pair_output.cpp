@@ -91,9 +91,9 @@ number_table::number_table(const std::filesystem::path& file, std::string_view h
               : file.extension() == ".json" ? format::json
                                             : format::csv),
       columns_(static_cast<std::size_t>(std::ranges::count(header, ',')) + 1) {
-    if (format_ == format::npy && header.find("kind") != std::string_view::npos)
+    if (format_ == format::npy && header.find("error") != std::string_view::npos)
         throw aabb::input_error(file.string() +
-                                ": an .npy file has integers only, so --geometry needs a file of CSV or .json");
+                                ": an .npy file has integers only, and these rows need a file of CSV or .json");
     text_ = format_ == format::npy   ? array_header()
             : format_ == format::csv ? std::string(header) + "\n"
                                      : "{\"columns\":[" + quoted_cells(header) + "],\n\"rows\":[";
