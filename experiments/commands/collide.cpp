@@ -305,8 +305,8 @@ void add_collide(const command_parser& program) {
                    "Draw the meshes at their poses to this file (.ply, .obj): triangles that intersect in red, their "
                    "intersections as black lines");
     command.flag("--exit-code", &request.exit_code,
-                 "Exit with status 1 (as diff) if triangles intersect; with --self=all, only if two without a shared "
-                 "corner intersect");
+                 "Exit with status 1 (as diff) if triangles intersect, or with --within if any are within D; with "
+                 "--self=all, only if two without a shared corner intersect");
     command.flag("--json", &request.json, "Print the summary as JSON");
 }
 

@@ -97,6 +97,9 @@ void require_no_triangle_test(const search_choice& choice) {
     if (choice.engine) throw aabb::input_error("no engine compares distances; omit --engine");
     if (choice.named[aabb::strategy_kind::triangle])
         throw aabb::input_error("distances need no triangle test; omit --triangle");
+    if (const std::optional<aabb::strategy_choice>& tree = choice.named[aabb::strategy_kind::tree];
+        tree && std::ranges::find(tree->settings, "leaf_test", &aabb::setting::name) != tree->settings.end())
+        throw aabb::input_error("distances need no test of a leaf; omit leaf_test");
 }
 
 std::string text_of_within(const std::optional<double>& distance) {

@@ -45,7 +45,7 @@ void add_within(const command_parser& command, std::optional<double>* distance, 
 /// The option --metric, of the distance of boxes.
 void add_metric(const command_parser& command, std::optional<aabb::box_metric>* metric);
 
-/// Rejects the choice of what decides whether triangles intersect, which their distances replace.
+/// Rejects the choice of what decides whether triangles intersect, or of a test before, which distances replace.
 void require_no_triangle_test(const search_choice& choice);
 
 /// " within 0.5", or nothing without --within.

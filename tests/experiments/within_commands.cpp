@@ -58,6 +58,10 @@ TEST_CASE_METHOD(in_folder, "pairs --within finds boxes at most so far apart, wi
     }
     const std::string scene = four_cubes(folder, false);
     CHECK(holds(run_well({"pairs", scene, "--within", "5"}).out, "3 pairs within 5, digest "));
+    CHECK(
+        holds(run_well({"pairs", scene, "--within", "5", "--metric", "axis"}).out, " within 5 on each axis, digest "));
+    CHECK(json_of({"pairs", scene, "--within", "5", "--metric", "axis", "--json"})["metric"] == "axis");
+    CHECK(json_of({"pairs", scene, "--within", "5", "--json"})["metric"] == "euclidean");
     CHECK(holds(run_well({"pairs", scene}).out, "0 overlapping pairs, digest "));
     CHECK(!json_of({"pairs", scene, "--json"}).contains("within"));
 }
@@ -176,6 +180,9 @@ TEST_CASE_METHOD(with_mesh_file, "What has no meaning for distances is rejected 
     CHECK(holds(refusal({"collide", mesh, "--self", "--within", "1"}), "omit --self, --geometry and --touching"));
     CHECK(holds(refusal({"collide", mesh, mesh, "--engine", "cgal", "--within", "1"}), "omit --engine"));
     CHECK(holds(refusal({"collide", mesh, mesh, "--triangle", "moller", "--within", "1"}), "omit --triangle"));
+    for (const char* asks : {"--within=1", "--distance"})
+        CHECK(holds(refusal({"collide", mesh, mesh, "--tree", "leafless:leaf_test=triangle_box", asks}),
+                    "omit leaf_test"));
     CHECK(holds(refusal({"contacts", mesh, mesh, "--touching", "no", "--within", "1"}),
                 "omit --geometry and --touching"));
 }
