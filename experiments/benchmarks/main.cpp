@@ -42,6 +42,7 @@ int main(int argc, char** argv) {
     aabblab::add_leaf_test_benchmarks();
     aabblab::add_triangle_test_benchmarks();
     aabblab::add_posed_triangle_benchmarks();
+    aabblab::add_distance_benchmarks();
     try {
         // Google Benchmark itself reports that no benchmark matches a filter.
         return benchmark::RunSpecifiedBenchmarks() == 0 ? bad_input : EXIT_SUCCESS;

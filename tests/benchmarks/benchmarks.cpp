@@ -158,6 +158,27 @@ TEST_CASE("Every stage that decides triangles at poses has a benchmark of each c
     CHECK(decided.at("posed/filter_in_double/flush") == 0);
 }
 
+TEST_CASE("Distances are timed in turn with those of other libraries, and compared") {
+    std::vector<std::string> measured;
+    for (const auto& run : reported("^(distance|within)/.*/spheres")) {
+        INFO(run.dump());
+        const std::string name = run["name"];
+        measured.push_back(name.substr(0, name.find("/spheres")));
+        CHECK(run["real_time"] > 0);
+        CHECK(run["ours_ms"] > 0);
+        CHECK(run["ratio"] > 0);
+        if (name.starts_with("within/")) {
+            CHECK(run["pairs"] > 100);
+        } else {
+            CHECK_BETWEEN(-1e-9, run["wrong"].get<double>(), 1 + 1e-9);
+            // Where two edges are nearest, the vertices of CGAL and Embree are about as far as triangles are long.
+            CHECK(run["worst"] < 0.05);
+        }
+    }
+    // CGAL is needed to build, others may be absent.
+    for (const char* name : {"distance/cgal", "within/cgal"}) CHECK(std::ranges::count(measured, name) == 1);
+}
+
 TEST_CASE("Every build has a benchmark that reports the speedup by two threads and its upper bound") {
     std::vector<std::string> measured;
     for (const auto& benchmark : reported("^build/.*/noise_sphere")) {
