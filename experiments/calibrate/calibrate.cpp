@@ -3,6 +3,7 @@ module;
 
 module aabblab.calibrate;
 
+import aabb.collision_filter;
 import aabb.extreme;
 import aabb.pipeline;
 import aabb.registry;
@@ -16,7 +17,7 @@ namespace aabblab {
 namespace {
 
 /// Costs that are fitted together, since the same runs determine them.
-enum class cost_group : unsigned char { lists, cut, columns, median, sah, queries };
+enum class cost_group : unsigned char { lists, cut, columns, indices, median, sah, queries };
 
 /// A part of a run whose work belongs to one group.
 struct measured_part {
@@ -70,12 +71,14 @@ struct box_run {
     box_frames frames;
     aabb::composition composed;
     aabb::cost_model planned_by;
+    std::shared_ptr<const aabb::collision_filter> filter = nullptr;
 };
 
 /// Runs the broad phase and measures each frame: its work if the run counts it, otherwise its time.
 std::vector<frame_sample> sample_frames(const box_run& run, aabb::instrumentation counted) {
     const costs_in_scope costs(run.planned_by);
     scene_frames scene(std::make_unique<aabb::known_boxes>(*run.frames));
+    scene.filter_by(run.filter);
     stage_runner runner(candidate_of(run.composed, /*meshes=*/false), scene, counted);
     aabb::work_counters before;
     std::vector<frame_sample> samples;
@@ -127,9 +130,7 @@ struct generated_scene {
 using work_of_frame = std::function<std::vector<double>(const frame_sample&)>;
 
 /// A trial that measures the mean frame after the warm-up; `work` computes its work from the counters.
-trial frames_trial(const generated_scene& scene, cost_group group, const aabb::composition& c,
-                   const aabb::cost_model& planned_by, work_of_frame work) {
-    const box_run run{scene.frames, c, planned_by};
+trial frames_trial(const generated_scene& scene, cost_group group, const box_run& run, work_of_frame work) {
     const auto measure = [group, run, work = std::move(work)](aabb::instrumentation counted) {
         const frame_sample mean = mean_of(sample_frames(run, counted), warm_up_frames, /*step=*/1);
         return std::vector{measured_part{group, work(mean), mean.ns}};
@@ -149,9 +150,10 @@ struct list_work {
 /// Adds two trials for the costs of Verlet lists: a plain search in every frame; and a list that is rebuilt in every
 /// even frame and reused in every odd one, with a measurement for each of the two.
 void add_list_trials(std::vector<trial>& trials, const generated_scene& scene) {
-    trials.push_back(frames_trial(scene, cost_group::lists, {}, {}, [n = scene.n](const frame_sample& mean) {
-        return list_work{.searched_boxes = n, .searched_pairs = mean.pairs}.by_cost();
-    }));
+    trials.push_back(
+        frames_trial(scene, cost_group::lists, {scene.frames, {}, {}}, [n = scene.n](const frame_sample& mean) {
+            return list_work{.searched_boxes = n, .searched_pairs = mean.pairs}.by_cost();
+        }));
     aabb::composition c;
     c[aabb::strategy_kind::prepare] = {"neighbour_list", {{"every", "2"}}};
     const auto measure = [n = scene.n, run = box_run{scene.frames, c, {}}](aabb::instrumentation counted) {
@@ -181,14 +183,15 @@ void add_cut_trial(std::vector<trial>& trials, const generated_scene& scene, con
     c[aabb::strategy_kind::sort] = {sort, {}};
     c[aabb::strategy_kind::partition] = partition;
     c[aabb::strategy_kind::sweep] = {"one_axis", {}};
-    trials.push_back(frames_trial(scene, cost_group::cut, c, {}, [listed = scene.n * lists](const frame_sample& mean) {
-        return std::vector<double>{listed,
-                                   mean.count(aabb::work::subset_copies),
-                                   mean.count(aabb::work::subsets),
-                                   mean.count(aabb::work::box_tests),
-                                   mean.pairs,
-                                   /*constant term=*/1};
-    }));
+    trials.push_back(frames_trial(scene, cost_group::cut, {scene.frames, c, {}},
+                                  [listed = scene.n * lists](const frame_sample& mean) {
+                                      return std::vector<double>{listed,
+                                                                 mean.count(aabb::work::subset_copies),
+                                                                 mean.count(aabb::work::subsets),
+                                                                 mean.count(aabb::work::box_tests),
+                                                                 mean.pairs,
+                                                                 /*constant term=*/1};
+                                  }));
 }
 
 /// Adds trials of axial cuts with one, few and many subsets: work in different ratios lets the fit separate the costs.
@@ -211,15 +214,16 @@ void add_column_trial(std::vector<trial>& trials, const generated_scene& scene, 
                       const aabb::cost_model& planned_by) {
     aabb::composition c;
     c[aabb::strategy_kind::partition] = {"columns", {{"axes", axes}}};
-    trials.push_back(frames_trial(scene, cost_group::columns, c, planned_by, [n = scene.n](const frame_sample& mean) {
-        // Copies are not counted if there is a single column.
-        return std::vector<double>{std::max(n, mean.count(aabb::work::subset_copies)),
-                                   mean.count(aabb::work::subsets),
-                                   mean.count(aabb::work::box_tests) / double{aabb::simd::width},
-                                   n,
-                                   mean.pairs,
-                                   /*constant term=*/1};
-    }));
+    trials.push_back(frames_trial(
+        scene, cost_group::columns, {scene.frames, c, planned_by}, [n = scene.n](const frame_sample& mean) {
+            // Copies are not counted if there is a single column.
+            return std::vector<double>{std::max(n, mean.count(aabb::work::subset_copies)),
+                                       mean.count(aabb::work::subsets),
+                                       mean.count(aabb::work::box_tests) / double{aabb::simd::width},
+                                       n,
+                                       mean.pairs,
+                                       /*constant term=*/1};
+        }));
 }
 
 /// Adds trials with as many columns as are optimal, with more and with fewer, so that the fit can separate the costs.
@@ -236,6 +240,22 @@ void add_column_trials(std::vector<trial>& trials, const generated_scene& scene)
     add_column_trial(trials, scene, "2", fewer);
     add_column_trial(trials, scene, "1", {});
     add_column_trial(trials, scene, "0", {});
+}
+
+/// Adds trials of two sets that are joined by an index, with a half, a quarter and a sixteenth of the boxes looked up.
+void add_index_trials(std::vector<trial>& trials, const generated_scene& scene) {
+    aabb::cost_model always_joins;
+    always_joins.refit_box = always_joins.open_node = 1e-9;
+    for (const std::uint32_t one_in : {2U, 4U, 16U}) {
+        auto sets = std::make_unique<aabb::collision_filter>();
+        for (std::uint32_t id = 0; id < scene.frames->front().size(); ++id)
+            sets->set(id, {.set = id % one_in == 0 ? aabb::object_set::a : aabb::object_set::b});
+        const box_run run{scene.frames, {}, always_joins, std::move(sets)};
+        trials.push_back(frames_trial(scene, cost_group::indices, run, [n = scene.n, one_in](const frame_sample& mean) {
+            return std::vector<double>{n, mean.count(aabb::work::box_tests) / 8, n / one_in, mean.pairs,
+                                       /*constant term=*/1};
+        }));
+    }
 }
 
 scene_choice moving_boxes(const char* kind, std::size_t objects, const char* displacement, std::size_t frames) {
@@ -278,7 +298,8 @@ void add_mesh_trials(std::vector<trial>& trials, const std::string& standing, co
 
 using sizes = std::vector<std::size_t>;
 
-/// Trials of Verlet lists, axial cuts and columns; the held-out ones, which check the fit, use other kinds of scenes.
+/// Trials of Verlet lists, axial cuts, columns and indices; the held-out ones, which check the fit, use other kinds of
+/// scenes.
 std::vector<trial> box_trials(calibration_size size) {
     const bool quick = size == calibration_size::quick;
     std::vector<trial> trials;
@@ -296,6 +317,7 @@ std::vector<trial> box_trials(calibration_size size) {
                 const generated_scene scene(moving_boxes(kind, n, "0.05", few_frames), held_out);
                 add_cut_trials(trials, scene);
                 add_column_trials(trials, scene);
+                add_index_trials(trials, scene);
             }
     };
     add_lists({"brownian", "mixed_sizes", "needles", "clustered"}, quick ? sizes{100, 2000} : sizes{100, 1000, 10'000},
@@ -328,10 +350,11 @@ struct cost_group_info {
     std::vector<double m::*> costs;  ///< of the first kinds of work; further kinds are fitted as well
 };
 
-const std::array<cost_group_info, 6> cost_groups{
+const std::array<cost_group_info, 7> cost_groups{
     {{"Verlet lists", {&m::search_box, &m::search_pair, &m::keep_box, &m::watch_box, &m::test_pair}},
      {"axial cut", {&m::list_entry, &m::cut_entry, &m::cut_subset, &m::cut_test}},
      {"columns", {&m::column_entry, &m::column, &m::column_test}},
+     {"indices of a filter", {&m::refit_box, &m::open_node}},
      {"median builds", {&m::median_triangle}},
      {"SAH builds", {&m::sah_triangle}},
      {"queries", {&m::node_visit}}}};

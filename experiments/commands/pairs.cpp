@@ -68,8 +68,7 @@ void find_pairs(const pairs_request& request) {
         boxes = in_floats(std::move(boxes));
     }
     scene_frames scene(std::move(boxes));
-    scene.filter_by(read_filter(request.filter, scene.objects()));
-    search_method method = method_of(choice, traits_of(scene));
+    search_method method = method_of(choice, traits_of(scene), read_filter(request.filter, scene.objects()));
     std::optional<number_table> rows;
     if (request.out) {
         require_other_file(*request.out, request.recording);

@@ -146,7 +146,7 @@ void read_exceptions(const std::filesystem::path& file, std::size_t objects, aab
         if (pair.a == pair.b) rows.fail(fmt::format("object {} is paired with itself", pair.a));
         pairs.push_back(pair);
     }
-    filter.leave_out(pairs);
+    filter.add_exceptions(pairs);
 }
 
 }  // namespace

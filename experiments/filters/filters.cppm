@@ -1,4 +1,4 @@
-/// Collision filters from the user's files: groups, masks, sets and rest of each object, and pairs to leave out.
+/// Collision filters from the user's files: groups, masks, sets and rest of each object, and exceptions.
 export module aabblab.filters;
 
 import aabb.collision_filter;
@@ -10,7 +10,7 @@ export namespace aabblab {
 /// The files of a filter, as options or keys of a scene name them.
 struct filter_files {
     std::optional<std::string> groups;  ///< CSV of object, group, mask, set, rest
-    std::optional<std::string> except;  ///< CSV of pairs a, b that are left out
+    std::optional<std::string> except;  ///< CSV of exceptions a, b
 
     [[nodiscard]] bool any() const noexcept { return groups || except; }
     /// The names, for the user: "groups.csv and except.csv".

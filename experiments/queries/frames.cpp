@@ -85,16 +85,18 @@ bool hit_filter::keeps(aabb::intersection_kind kind) {
 }
 
 /// Makes the stages of a search from named and selected strategies; an engine takes the place of the last stage.
-search_method method_of(const search_choice& choice, const aabb::scene_traits& traits) {
+search_method method_of(const search_choice& choice, const aabb::scene_traits& traits,
+                        std::shared_ptr<const aabb::collision_filter> filter) {
     constexpr auto uncounted = aabb::instrumentation::none;
     const aabb::composition c = select_composition(choice.named, traits);
     search_method method;
+    method.filter = std::move(filter);
     for (const aabb::stage stage : choice.stages) {
         if (stage == aabb::stage::local_detection && choice.within) {
             aabb::composition named = c;
             named[aabb::strategy_kind::triangle] = {"distance", {}};
             method.name += (method.name.empty() ? "" : ", ") + to_text(named, stage);
-            aabb::near_stages near = aabb::compose_near(c, choice.within->d);
+            aabb::near_stages near = aabb::compose_near(c, choice.within->d, method.filter.get());
             method.run_stages.local = std::move(near.local);
             if (method.run_stages.global) method.run_stages.global = std::move(near.global);
             continue;
@@ -109,13 +111,12 @@ search_method method_of(const search_choice& choice, const aabb::scene_traits& t
             method.run_stages.local =
                 by_engine ? aabb::make_mesh_engine(*choice.engine) : aabb::compose_local_detection(c, uncounted);
     }
-    if (choice.within && method.run_stages.global) {
-        if (!method.run_stages.local)
-            method.run_stages.global = std::make_unique<aabb::within_stage>(
-                std::move(method.run_stages.global), choice.within->d, choice.within->metric, choice.within->in_double);
-        // What the filter keeps from the search is found where boxes overlap, which is too near.
-        method.filtered = aabb::filtering::late;
-    }
+    const bool is_of_triangles = method.run_stages.local != nullptr;
+    if (method.filter && !(choice.within && is_of_triangles))
+        method.run_stages.global = filtered(std::move(method.run_stages.global), *method.filter);
+    if (choice.within && !is_of_triangles)
+        method.run_stages.global = std::make_unique<aabb::within_stage>(
+            std::move(method.run_stages.global), choice.within->d, choice.within->metric, choice.within->in_double);
     return method;
 }
 
@@ -129,7 +130,7 @@ frames_result search_frames(scene_frames& scene, search_method& method, const fr
     result.objects = scene.objects();
     std::optional<stage_runner> searcher;
     const wall_stopwatch building;
-    searcher.emplace(std::move(method.run_stages), scene, method.filtered);
+    searcher.emplace(std::move(method.run_stages), scene);
     result.build_ms = building.ms();
     progress shown("frames searched", scene.frames());
     tally totals(meshes);

@@ -82,15 +82,17 @@ struct search_choice {
 struct search_method {
     std::string name;
     bool exact = true;
+    std::shared_ptr<const aabb::collision_filter> filter;  ///< of the stages, which it outlives; may be null
     stages run_stages;
-    aabb::filtering filtered = aabb::filtering::early;  ///< by the scene's collision filter
 
     /// "cgal", "fcl (inexact)".
     [[nodiscard]] std::string text() const { return exact ? name : name + " (inexact)"; }
 };
 /// Selects the strategies that are not named for the scene.
+/// @param filter says which pairs are found, for a scene that has none of its own; null for all
 /// @throws aabb::input_error on an unknown engine or an invalid composition.
-[[nodiscard]] search_method method_of(const search_choice& choice, const aabb::scene_traits& traits);
+[[nodiscard]] search_method method_of(const search_choice& choice, const aabb::scene_traits& traits,
+                                      std::shared_ptr<const aabb::collision_filter> filter = nullptr);
 
 /// A drawing of one frame of meshes.
 struct frame_drawing {

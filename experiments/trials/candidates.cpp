@@ -230,6 +230,8 @@ public:
     void search(std::vector<aabb::index_pair>& pairs) override {
         pairs.insert(pairs.end(), pairs_.begin(), pairs_.end());
     }
+    /// The engine has found the pairs of all objects, in every frame.
+    [[nodiscard]] bool finds_overlaps_only() const override { return false; }
     [[nodiscard]] aabb::work_counters counters() const override { return {}; }
     [[nodiscard]] std::vector<aabb::part_bytes> bytes() const override { return {}; }
     [[nodiscard]] std::vector<aabb::omission> left_out() const override { return {}; }

@@ -58,14 +58,14 @@ void scene_frames::note_changes(std::span<const std::uint8_t> present) {
 
 stage_runner::stage_runner(const candidate& tested, const scene_frames& scene, aabb::instrumentation counted)
     : stage_runner(stages{tested.make_global(counted), scene.meshes() ? tested.make_local(counted) : nullptr}, scene,
-                   tested.reported ? aabb::filtering::late : aabb::filtering::early, counted) {}
+                   counted) {}
 
 /// Connects the stages for a scene. Boxes go to the broad phase directly. Meshes need a pipeline, which derives boxes
 /// from their poses; without a broad phase it takes every two objects to the narrow phase.
-stage_runner::stage_runner(stages given, const scene_frames& scene, aabb::filtering when, aabb::instrumentation counted)
+stage_runner::stage_runner(stages given, const scene_frames& scene, aabb::instrumentation counted)
     : scene_(scene), stages_(std::move(given)) {
     if (stages_.global && scene.filter())
-        stages_.global = filtered(std::move(stages_.global), *scene.filter(), when, counted);
+        stages_.global = filtered(std::move(stages_.global), *scene.filter(), counted);
     if (stages_.global) stages_.global->expect(scene.frames());  // few frames do not repay much preparation
     if (!scene.meshes()) return;
     if (stages_.global)

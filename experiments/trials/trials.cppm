@@ -120,9 +120,7 @@ struct stages {
 class stage_runner {
 public:
     stage_runner(const candidate& tested, const scene_frames& scene, aabb::instrumentation counted);
-    /// @param when pairs are left out, if the scene has a filter
-    stage_runner(stages given, const scene_frames& scene, aabb::filtering when = aabb::filtering::early,
-                 aabb::instrumentation counted = aabb::instrumentation::none);
+    stage_runner(stages given, const scene_frames& scene, aabb::instrumentation counted = aabb::instrumentation::none);
 
     /// Execute the phases of a frame, which are timed separately: update of the stages, broad phase, narrow phase.
     /// @throws aabb::input_error with file and frame if poses from a file are rejected.

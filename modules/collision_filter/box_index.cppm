@@ -1,4 +1,4 @@
-/// An index of boxes that do not move.
+/// An index of boxes, in which other boxes are looked up.
 module aabb.collision_filter:box_index;
 
 import aabb.geometry;
@@ -7,74 +7,90 @@ import aabb.std;
 
 namespace aabb {
 
-/// A packed R-tree of boxes, eight per node, built by sort-tile-recursive packing (Leutenegger, Lopez and Edgington,
-/// "STR: a simple and efficient algorithm for R-tree packing", ICDE 1997). The children of node i of a level are the
-/// nodes 8 i to 8 i + 7 of the level below, so that no node stores where they are. Only comparisons decide what a query
-/// finds; the centres by which boxes are sorted only decide how fast.
+/// A packed R-tree of boxes, eight per node. The children of node i of a level are the nodes 8 i to 8 i + 7 of the
+/// level below, so that no node stores where they are. Boxes are ordered as by a k-d tree (Friedman, Bentley and
+/// Finkel, "An algorithm for finding best matches in logarithmic expected time", 1977): cut in halves across the axis
+/// on which their centres spread most. Only comparisons of boxes decide what a query finds; centres only decide how
+/// fast.
 class box_index {
 public:
-    struct entry {
-        box bounds;
-        std::uint32_t id;
-    };
-
-    /// Replaces the contents.
-    void build(std::vector<entry>& entries) {
-        sort(entries);
-        ids_.clear();
-        for (const entry& e : entries) ids_.push_back(e.id);
-        levels_.clear();
-        std::size_t nodes = nodes_for(entries.size());
-        for (; nodes > 1; nodes = nodes_for(nodes)) levels_.emplace_back(nodes);
-        levels_.emplace_back(nodes);
-        for (std::size_t i = 0; i < entries.size(); ++i) levels_[0][i / 8].set(i % 8, entries[i].bounds);
-        fit_upper_levels();
+    /// Empties the index; boxes that are added are in it once it is built. All keep the memory.
+    void clear() noexcept {
+        entries_.clear();
+        levels_ = 0;
+    }
+    void add(std::uint32_t id, const box& b) {
+        vec3f centre{};
+        for (int k = 0; k < 3; ++k) centre[k] = b.min[k] / 2 + b.max[k] / 2;
+        entries_.push_back({centre, id});
+    }
+    /// @param boxes by id
+    void build(std::span<const box> boxes) {
+        order(entries_);
+        levels_ = 0;
+        std::size_t nodes = 0;
+        std::size_t in_level = entries_.size();
+        do {
+            in_level = nodes_for(in_level);
+            first_nodes_[levels_++] = static_cast<std::uint32_t>(nodes);
+            nodes += in_level;
+        } while (in_level > 1);
+        nodes_.assign(nodes, node());
+        refit(boxes);
     }
 
     /// Replaces every box by one of the same id.
     /// @param boxes by id
     void refit(std::span<const box> boxes) {
-        for (std::size_t i = 0; i < ids_.size(); ++i) levels_[0][i / 8].set(i % 8, boxes[ids_[i]]);
-        fit_upper_levels();
+        for (std::size_t i = 0; i < entries_.size(); ++i) nodes_[i / 8].set(i % 8, boxes[entries_[i].id]);
+        for (std::uint32_t level = 1; level < levels_; ++level)
+            for (std::uint32_t i = first_nodes_[level - 1]; i < first_nodes_[level]; ++i) {
+                const std::uint32_t place = i - first_nodes_[level - 1];
+                nodes_[first_nodes_[level] + place / 8].set(place % 8, nodes_[i].bounds());
+            }
     }
 
     /// Calls `take` with the id of each box that overlaps this one, in unspecified order.
-    /// @returns the number of boxes that were tested
+    /// @returns the number of opened nodes; each tests eight boxes
     template <class Take>
     std::size_t query(const box& b, Take take) const {
-        if (ids_.empty()) return 0;
+        if (entries_.empty()) return 0;
         const query_box wanted(b);
         std::array<position, 8 * most_levels> stack;
         std::size_t waiting = 0;
-        stack[waiting++] = {static_cast<std::uint32_t>(levels_.size() - 1), 0};
-        std::size_t tested = 0;
+        stack[waiting++] = {levels_ - 1, 0};
+        std::size_t opened = 0;
         while (waiting > 0) {
             const position at = stack[--waiting];
-            ++tested;
-            for (std::uint32_t hits = levels_[at.level][at.node].overlapping(wanted); hits != 0; hits &= hits - 1) {
+            ++opened;
+            const node& n = nodes_[first_nodes_[at.level] + at.node];
+            for (std::uint32_t hits = n.overlapping(wanted); hits != 0; hits &= hits - 1) {
                 const std::uint32_t child = 8 * at.node + static_cast<std::uint32_t>(std::countr_zero(hits));
                 if (at.level == 0)
-                    take(ids_[child]);
+                    take(entries_[child].id);
                 else
                     stack[waiting++] = {at.level - 1, child};
             }
         }
-        return 8 * tested;
+        return opened;
     }
 
-    [[nodiscard]] std::size_t size() const noexcept { return ids_.size(); }
-    void clear() noexcept {
-        ids_.clear();
-        levels_.clear();
+    /// A guess at the number of nodes that a query opens: two of each level.
+    [[nodiscard]] static double expected_nodes(std::size_t boxes) noexcept {
+        const std::size_t levels = (static_cast<std::size_t>(std::bit_width(boxes)) + 2) / 3;
+        return 2 * static_cast<double>(levels);
     }
-    [[nodiscard]] std::size_t bytes() const noexcept {
-        std::size_t total = bytes_of(ids_, levels_);
-        for (const std::vector<node>& level : levels_) total += bytes_of(level);
-        return total;
-    }
+
+    [[nodiscard]] std::size_t size() const noexcept { return entries_.size(); }
+    [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(entries_, nodes_); }
 
 private:
     static constexpr std::size_t most_levels = 11;  // 8^11 > 2^32 boxes
+
+    struct entry {
+        vec3f centre;
+        std::uint32_t id;
+    };
 
     struct query_box {
         explicit query_box(const box& b) {
@@ -99,10 +115,12 @@ private:
             }
         }
         [[nodiscard]] box bounds() const {
-            box all = empty_box();
-            for (std::size_t lane = 0; lane < 8; ++lane)
-                all = merged(all,
-                             {{min[0][lane], min[1][lane], min[2][lane]}, {max[0][lane], max[1][lane], max[2][lane]}});
+            using simd::eight_floats, simd::load_eight;
+            box all{};
+            for (std::size_t k = 0; k < 3; ++k) {
+                all.min[static_cast<int>(k)] = simd::least(load_eight<eight_floats>(min[k].data()));
+                all.max[static_cast<int>(k)] = -simd::least(-load_eight<eight_floats>(max[k].data()));
+            }
             return all;
         }
         /// The lanes whose boxes overlap, a bit each.
@@ -125,42 +143,26 @@ private:
 
     [[nodiscard]] static std::size_t nodes_for(std::size_t children) noexcept { return (children + 7) / 8; }
 
-    void fit_upper_levels() {
-        for (std::size_t level = 1; level < levels_.size(); ++level)
-            for (std::size_t i = 0; i < levels_[level - 1].size(); ++i)
-                levels_[level][i / 8].set(i % 8, levels_[level - 1][i].bounds());
+    /// Orders entries so that those of every node are together. Each part is cut between two of the greatest nodes that
+    /// are smaller than it, in the middle of these nodes.
+    static void order(std::span<entry> part) {
+        std::size_t in_node = 8;
+        if (part.size() <= in_node) return;
+        while (8 * in_node < part.size()) in_node *= 8;
+        const std::size_t nodes = (part.size() + in_node - 1) / in_node;
+        const std::size_t left = nodes / 2 * in_node;
+        box spread = empty_box();
+        for (const entry& e : part) spread = merged(spread, bounds_of(e.centre));
+        std::ranges::nth_element(part, part.begin() + static_cast<std::ptrdiff_t>(left), {},
+                                 [axis = longest_axis(spread)](const entry& e) { return e.centre[axis]; });
+        order(part.first(left));
+        order(part.subspan(left));
     }
 
-    static void sort_by_centre(std::span<entry> entries, int axis) {
-        const auto centre = [axis](const entry& e) { return double{e.bounds.min[axis]} + double{e.bounds.max[axis]}; };
-        std::ranges::sort(entries, [&](const entry& e, const entry& f) {
-            return centre(e) < centre(f) || (centre(e) == centre(f) && e.id < f.id);
-        });
-    }
-
-    /// Calls `take` with parts of about equal size, multiples of eight but for the last.
-    template <class Take>
-    static void tile(std::span<entry> entries, std::size_t parts, Take take) {
-        const std::size_t size = 8 * nodes_for((entries.size() + parts - 1) / parts);
-        for (; !entries.empty(); entries = entries.subspan(std::min(size, entries.size())))
-            take(entries.first(std::min(size, entries.size())));
-    }
-
-    /// Sorts into slabs along x, rows along y and leaves along z, of about as many leaves each way.
-    static void sort(std::span<entry> entries) {
-        const auto leaves = [](std::span<entry> part) { return static_cast<double>(nodes_for(part.size())); };
-        const auto rounded_up = [](double x) {
-            return std::max<std::size_t>(static_cast<std::size_t>(std::ceil(x)), 1);
-        };
-        sort_by_centre(entries, 0);
-        tile(entries, rounded_up(std::cbrt(leaves(entries))), [&](std::span<entry> slab) {
-            sort_by_centre(slab, 1);
-            tile(slab, rounded_up(std::sqrt(leaves(slab))), [&](std::span<entry> row) { sort_by_centre(row, 2); });
-        });
-    }
-
-    std::vector<std::vector<node>> levels_;  // from the leaves to the root
-    std::vector<std::uint32_t> ids_;         // in the order of the leaves
+    std::vector<entry> entries_;                            // in the order of the leaves
+    std::vector<node> nodes_;                               // by level, from the leaves to the root
+    std::array<std::uint32_t, most_levels> first_nodes_{};  // by level
+    std::uint32_t levels_ = 0;
 };
 
 }  // namespace aabb

@@ -35,20 +35,30 @@ public:
         return id < objects_.size() ? objects_[id] : object_filter{};
     }
 
-    /// Leaves these pairs out, besides those of earlier calls; each in either order.
-    void leave_out(std::span<const index_pair> pairs) {
-        for (const auto [a, b] : pairs) exceptions_.push_back(ordered_pair(a, b));
-        std::ranges::sort(exceptions_);
-        exceptions_.erase(std::ranges::unique(exceptions_).begin(), exceptions_.end());
+    /// Adds exceptions, pairs that are not tested whatever else is known of them, each in either order, or removes such
+    /// exceptions again. A call takes time for all exceptions, so many are best passed at once.
+    void add_exceptions(std::span<const index_pair> pairs) {
+        std::vector<index_pair> all = in_order(pairs);
+        const auto added = static_cast<std::ptrdiff_t>(all.size());
+        all.insert(all.end(), exceptions_.begin(), exceptions_.end());
+        std::ranges::inplace_merge(all, all.begin() + added);
+        all.erase(std::ranges::unique(all).begin(), all.end());
+        replace_exceptions(std::move(all));
     }
-    void leave_out(index_pair pair) { leave_out({&pair, 1}); }
+    void remove_exceptions(std::span<const index_pair> pairs) {
+        std::vector<index_pair> others;
+        std::ranges::set_difference(exceptions_, in_order(pairs), std::back_inserter(others));
+        replace_exceptions(std::move(others));
+    }
+    void add_exception(index_pair pair) { add_exceptions({&pair, 1}); }
+    void remove_exception(index_pair pair) { remove_exceptions({&pair, 1}); }
 
-    /// The pairs that were left out by `leave_out`, a < b, sorted.
+    /// The exceptions, a < b, sorted.
     [[nodiscard]] std::span<const index_pair> exceptions() const noexcept { return exceptions_; }
 
     /// Whether a pair of objects is tested, in either order.
     [[nodiscard]] inline bool keeps(std::uint32_t a, std::uint32_t b) const noexcept {
-        return keeps_by_attributes(a, b) && !std::ranges::binary_search(exceptions_, ordered_pair(a, b));
+        return keeps_by_attributes(a, b) && !is_exception(ordered_pair(a, b));
     }
 
     /// Removes the pairs from index `first` on that are not kept, in place and in order.
@@ -76,10 +86,11 @@ public:
     /// The number of objects at rest.
     [[nodiscard]] std::size_t resting() const noexcept { return static_cast<std::size_t>(resting_); }
     [[nodiscard]] bool has_sets() const noexcept { return in_a_ + in_b_ > 0; }
-    [[nodiscard]] std::size_t size_of_smaller_set() const noexcept {
-        return static_cast<std::size_t>(std::min(in_a_, in_b_));
+    /// The numbers of objects of the smaller and of the larger set.
+    [[nodiscard]] std::array<std::size_t, 2> sizes_of_sets() const noexcept {
+        return {static_cast<std::size_t>(std::min(in_a_, in_b_)), static_cast<std::size_t>(std::max(in_a_, in_b_))};
     }
-    [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(objects_, exceptions_); }
+    [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(objects_, exceptions_, first_exceptions_); }
 
 private:
     void count(const object_filter& object, std::ptrdiff_t change) noexcept {
@@ -100,10 +111,36 @@ private:
         return kept != 0;
     }
 
-    std::vector<object_filter> objects_;  // by id; those beyond the end have the defaults
-    std::vector<index_pair> exceptions_;  // a < b, sorted
-    std::ptrdiff_t in_a_ = 0, in_b_ = 0;  // numbers of objects by set
-    std::ptrdiff_t resting_ = 0;          // number of objects at rest
+    /// Objects have few exceptions each, so that those of one take fewer steps to search than all of them.
+    [[nodiscard]] inline bool is_exception(index_pair pair) const noexcept {
+        if (std::size_t{pair.a} + 1 >= first_exceptions_.size()) return false;
+        const auto of_object =
+            std::span(exceptions_).first(first_exceptions_[std::size_t{pair.a} + 1]).subspan(first_exceptions_[pair.a]);
+        return !of_object.empty() && std::ranges::binary_search(of_object, pair.b, {}, &index_pair::b);
+    }
+
+    /// The pairs with a < b, sorted, each once.
+    [[nodiscard]] static std::vector<index_pair> in_order(std::span<const index_pair> pairs) {
+        std::vector<index_pair> ordered;
+        for (const auto [a, b] : pairs) ordered.push_back(ordered_pair(a, b));
+        std::ranges::sort(ordered);
+        ordered.erase(std::ranges::unique(ordered).begin(), ordered.end());
+        return ordered;
+    }
+    void replace_exceptions(std::vector<index_pair> sorted) {
+        std::vector<std::size_t> firsts;
+        if (!sorted.empty()) firsts.reserve(std::size_t{sorted.back().a} + 2);
+        for (std::size_t i = 0; i < sorted.size(); ++i) firsts.resize(std::size_t{sorted[i].a} + 1, i);
+        if (!sorted.empty()) firsts.push_back(sorted.size());
+        exceptions_ = std::move(sorted);
+        first_exceptions_ = std::move(firsts);
+    }
+
+    std::vector<object_filter> objects_;         // by id; those beyond the end have the defaults
+    std::vector<index_pair> exceptions_;         // a < b, sorted
+    std::vector<std::size_t> first_exceptions_;  // by a: the index of its first exception, or of the next object's
+    std::ptrdiff_t in_a_ = 0, in_b_ = 0;         // numbers of objects by set
+    std::ptrdiff_t resting_ = 0;                 // number of objects at rest
 };
 
 }  // namespace aabb

@@ -1,20 +1,20 @@
 module aabb.collision_filter;
 
 import :box_index;
+import :filter_plan;
 import :set_join;
 
 namespace aabb {
 
 namespace {
 
-/// A stage that removes the pairs which are left out. Objects at rest may be kept from the search: those that stay
-/// where they were are in an index, in which the others are looked up, so that a frame takes time for what moves. Two
-/// sets may be joined without a search: from the frame on after which many pairs within the sets were found in vain.
+/// A stage that removes the pairs which the filter does not keep. Objects at rest may be kept from the search: those
+/// that stay where they were are in an index, in which the others are looked up, so that a frame takes time for what
+/// moves. Two sets may be joined without a search. Both are done as long as they are estimated to be worth their cost.
 class filtered_stage final : public global_stage {
 public:
-    filtered_stage(std::unique_ptr<global_stage> search, const collision_filter& filter, filtering when,
-                   instrumentation counted)
-        : search_(std::move(search)), filter_(filter), when_(when), counted_(counted) {}
+    filtered_stage(std::unique_ptr<global_stage> search, const collision_filter& filter, instrumentation counted)
+        : search_(std::move(search)), filter_(filter), counted_(counted) {}
 
     [[nodiscard]] std::unique_ptr<scene_parts> divide(const mesh_scene& scene) override {
         std::unique_ptr<scene_parts> parts = search_->divide(scene);
@@ -53,14 +53,13 @@ public:
         require_ieee_arithmetic();
         objects_.require_boxes_for_all(boxes.size());
         boxes_ = boxes;
-        joins_ = (joins_ || joins_next_) && filter_.has_sets();
-        joins_next_ = false;
+        joins_ = wants_join_ && filter_.has_sets();
         frame_.change([&] {
             objects_.settle();
             for (const std::uint32_t id : departures_)
                 if (places_[id] == place::indexed && !objects_.contains(id)) take_out(id);
             departures_.clear();
-            if (when_ == filtering::early && !joins_ && (filter_.resting() > 0 || indexed_ > 0)) sort_out_resting();
+            if (may_withhold_ && !joins_ && (filter_.resting() > 0 || indexed_ > 0)) sort_out_resting();
         });
         searches_ = !joins_ && (searched_ > 0 || indexed_ == 0);
         if (searches_)
@@ -76,16 +75,19 @@ public:
         frame_.require_taken();
         require_ieee_arithmetic();
         append_guard guard(pairs);
+        const std::size_t before = pairs.size();
         if (joins_)
             append_pairs_of_sets(pairs);
         else
             append_searched_pairs(pairs);
         guard.keep();
+        if (may_withhold_ && filter_.has_sets()) plan_join(pairs.size() - before);
     }
 
     [[nodiscard]] double share_of_update() const override {
         return searches_ ? search_->share_of_update() : 0;  // otherwise its last share is of an earlier frame
     }
+    [[nodiscard]] bool finds_overlaps_only() const override { return may_withhold_; }
     [[nodiscard]] work_counters counters() const override {
         work_counters total = search_->counters();
         total.add(work::box_tests, tests_counted_);
@@ -97,7 +99,29 @@ public:
             {"prepare", bytes_of(objects_, object_of_, places_, departures_, kept_, movers_, index_, join_)});
         return parts;
     }
-    [[nodiscard]] std::vector<stage_plan> plans() const override { return search_->plans(); }
+    /// Reports to `explain` how the pairs are found, and how many the filter kept of those that the search found.
+    [[nodiscard]] std::vector<stage_plan> plans() const override {
+        if (joins_)
+            return {{plan_kind::set_join,
+                     {"sets a and b are joined: {looked_up} boxes are looked up in an index of {stored}",
+                      {{{"looked_up", amount(join_.looked_up())}, {"stored", amount(join_.stored())}}}}}};
+        std::vector<stage_plan> stage_plans = searches_ ? search_->plans() : std::vector<stage_plan>();
+        stage_plans.push_back({plan_kind::filter,
+                               {"the filter kept {kept} of {found} pairs that the search found",
+                                {{{"kept", amount(kept_pairs_)}, {"found", amount(found_)}}}}});
+        if (!may_withhold_)
+            stage_plans.push_back({plan_kind::filter, {"all objects are searched: pairs need not overlap"}});
+        else if (indexed_ > 0)
+            stage_plans.push_back({plan_kind::resting_index,
+                                   {"{indexed} objects at rest are in an index, in which {movers} others are looked up",
+                                    {{{"indexed", amount(indexed_)}, {"movers", amount(movers_.size())}}}}});
+        else if (filter_.resting() > 0)
+            stage_plans.push_back(
+                {plan_kind::filter, {"objects at rest are searched: no index is worth its cost yet"}});
+        if (may_withhold_ && filter_.has_sets())
+            stage_plans.push_back({plan_kind::filter, {"both sets are searched: no join is worth its cost yet"}});
+        return stage_plans;
+    }
     [[nodiscard]] std::vector<omission> left_out() const override { return search_->left_out(); }
 
 private:
@@ -135,9 +159,7 @@ private:
         search_object(id);
     }
 
-    /// Takes out of the index what does not rest any more, and decides whether those that rest are worth an index. Each
-    /// frame in which an object at rest is searched counts. The index is built anew once these have taken as long as
-    /// building it, so that it at most doubles the time: sorting takes about log n times as long per object.
+    /// Takes out of the index what does not rest any more, and decides whether those that rest are worth an index.
     void sort_out_resting() {
         std::size_t unindexed = 0;  // objects at rest that are searched
         movers_.clear();
@@ -150,25 +172,61 @@ private:
             else if (places_[id] == place::searched)
                 ++unindexed;
         }
-        const std::size_t resting = indexed_ + unindexed;
-        if (indexed_ > 0 && resting < least_ratio_to_keep * movers_.size()) {
-            for (std::uint32_t id = 0; id < places_.size(); ++id)
-                if (places_[id] == place::indexed) release_from_index(id);
-            index_.clear();
-            waiting_ = 0;
-            return;
-        }
-        if (indexed_ == 0 && resting < least_ratio_to_build * movers_.size()) return;
-        waiting_ += unindexed;
-        const auto frames = static_cast<std::size_t>(std::bit_width(resting));
-        if ((unindexed > 0 && waiting_ >= frames * resting) || 2 * indexed_ < index_.size()) build_index();
+        if (indexed_ == 0 ? is_index_worth_it(unindexed) : is_rebuilding_worth_it(unindexed))
+            build_index(pairs_in_vain(unindexed));
+        else if (indexed_ > 0 && is_index_in_vain())
+            give_up_index();
+    }
+
+    /// Estimates how many of the pairs that the search found in the last frame are of two objects at rest, as if they
+    /// lay like the others.
+    /// @param resting number of objects at rest that are searched
+    [[nodiscard]] double pairs_in_vain(std::size_t resting) const {
+        const double share = resting > 0 ? amount(resting) / amount(searched_) : 0;
+        return std::min(amount(found_ - kept_pairs_), amount(found_) * share * share);
+    }
+
+    /// @param resting number of objects at rest, all of which are searched
+    [[nodiscard]] bool is_index_worth_it(std::size_t resting) {
+        const frame_cost searching{.searched = searched_, .found = amount(found_)};
+        const frame_cost indexed{.searched = searched_ - resting,
+                                 .found = amount(found_) - pairs_in_vain(resting),
+                                 .watched = searched_,
+                                 .opened = index_nodes_.opened_by(movers_.size(), resting)};
+        return index_regret_.exceeds(ns_to_build(resting), searching.ns() - indexed.ns());
+    }
+    /// Whether the index has taken more than searching all objects would have, by as much as a frame of the latter.
+    [[nodiscard]] bool is_index_in_vain() {
+        const std::size_t n = searched_ + indexed_;
+        const frame_cost indexed{.searched = searched_,
+                                 .found = amount(found_),
+                                 .watched = n,
+                                 .opened = amount(opened_),
+                                 .looked_up = amount(looked_up_)};
+        const frame_cost searching{.searched = n, .found = amount(found_ + looked_up_) + pairs_in_index()};
+        return index_regret_.exceeds(searching.ns(), indexed.ns() - searching.ns());
+    }
+    /// Whether many objects have left the index, or searching those at rest that are not in it is worth a new one.
+    /// @param unindexed objects at rest that are searched
+    [[nodiscard]] bool is_rebuilding_worth_it(std::size_t unindexed) {
+        const frame_cost saved{.searched = unindexed, .found = pairs_in_vain(unindexed)};
+        return 2 * indexed_ < index_.size() ||
+               rebuilding_regret_.exceeds(ns_to_build(indexed_ + unindexed), saved.ns());
+    }
+
+    /// Estimates how many pairs of objects in the index overlap: a share of those when it was built.
+    [[nodiscard]] double pairs_in_index() const {
+        const double share = index_.size() > 0 ? amount(indexed_) / amount(index_.size()) : 0;
+        return pairs_at_rest_ * share * share;
     }
 
     /// Moves every object at rest from the search to the index.
-    void build_index() {
-        waiting_ = 0;
+    /// @param more_pairs estimated number of pairs of those that move
+    void build_index(double more_pairs) {
+        pairs_at_rest_ = pairs_in_index() + more_pairs;
+        rebuilding_regret_.forget();
         kept_.assign(boxes_.begin(), boxes_.end());
-        std::vector<box_index::entry> entries;
+        index_.clear();
         for (std::uint32_t id = 0; id < places_.size(); ++id) {
             if (places_[id] == place::none || !rests(id)) continue;
             if (places_[id] == place::searched) {
@@ -177,30 +235,58 @@ private:
                 ++indexed_;
                 places_[id] = place::indexed;
             }
-            entries.push_back({boxes_[id], id});
+            index_.add(id, boxes_[id]);
         }
-        index_.build(entries);
+        index_.build(boxes_);
+    }
+    void give_up_index() {
+        for (std::uint32_t id = 0; id < places_.size(); ++id)
+            if (places_[id] == place::indexed) release_from_index(id);
+        index_.clear();
     }
 
     void append_searched_pairs(std::vector<index_pair>& pairs) {
         const std::size_t before = pairs.size();
         if (searches_) search_->search(pairs);
-        const std::size_t searched = pairs.size();
-        remove_left_out(pairs, before);
-        const std::size_t removed = searched - pairs.size();
-        const std::size_t kept = pairs.size() - before;
-        joins_next_ = when_ == filtering::early && filter_.has_sets() &&
-                      removed > pairs_per_query * filter_.size_of_smaller_set() + pairs_per_result * kept;
+        found_ = pairs.size() - before;
+        remove_unkept(pairs, before);
+        kept_pairs_ = pairs.size() - before;
+        opened_ = looked_up_ = 0;
         if (indexed_ > 0) append_pairs_with_indexed(pairs);
     }
     void append_pairs_of_sets(std::vector<index_pair>& pairs) {
-        const std::size_t tests = join_.search([&](index_pair p) {
+        join_.search([&](index_pair p) {
             if (keeps(p.a, p.b)) pairs.push_back(p);
         });
-        if (counted_ == instrumentation::counters) tests_counted_ += tests;
+        count_tests(join_.opened());
     }
 
-    void remove_left_out(std::vector<index_pair>& pairs, std::size_t first) const {
+    /// Compares what this frame took with what it would have taken in the other way, searched or joined.
+    /// @param pairs number of the frame's pairs
+    void plan_join(std::size_t pairs) {
+        const std::size_t n = searched_ + indexed_;
+        if (joins_) {
+            constexpr double share_of_draw = 1.0 / 16;
+            pairs_in_sets_ += share_of_draw * (join_.pairs_within() - pairs_in_sets_);
+            join_nodes_.learn(join_.looked_up(), join_.opened());
+            const frame_cost joined{.refitted = n, .opened = amount(join_.opened()), .looked_up = amount(pairs)};
+            const frame_cost searching{.searched = n, .found = amount(pairs) + pairs_in_sets_};
+            wants_join_ = !join_regret_.exceeds(searching.ns(), joined.ns() - searching.ns());
+            return;
+        }
+        const auto [fewer, more] = filter_.sizes_of_sets();
+        const frame_cost searching{.searched = searched_,
+                                   .found = amount(found_),
+                                   .watched = indexed_ > 0 ? n : 0,
+                                   .opened = amount(opened_),
+                                   .looked_up = amount(looked_up_)};
+        const frame_cost joined{
+            .refitted = n, .opened = join_nodes_.opened_by(fewer, more), .looked_up = amount(pairs)};
+        wants_join_ = join_regret_.exceeds(ns_to_build(more), searching.ns() - joined.ns());
+        pairs_in_sets_ = amount(found_ - kept_pairs_);
+    }
+
+    void remove_unkept(std::vector<index_pair>& pairs, std::size_t first) const {
         if (object_of_.empty())
             filter_.apply(pairs, first);
         else
@@ -209,26 +295,22 @@ private:
 
     /// Pairs of an object that does not rest and one in the index, whose entries may be of objects that have left it.
     void append_pairs_with_indexed(std::vector<index_pair>& pairs) {
-        std::size_t tests = 0;
         for (const std::uint32_t mover : movers_)
-            tests += index_.query(boxes_[mover], [&](std::uint32_t id) {
+            opened_ += index_.query(boxes_[mover], [&](std::uint32_t id) {
+                ++looked_up_;
                 if (places_[id] == place::indexed && keeps(mover, id)) pairs.push_back(ordered_pair(mover, id));
             });
-        if (counted_ == instrumentation::counters) tests_counted_ += tests;
+        index_nodes_.learn(movers_.size(), opened_);
+        count_tests(opened_);
     }
-
-    /// Numbers of objects at rest per other object from which on an index is built, and below which it is given up: a
-    /// query takes longer than searching one more object.
-    static constexpr std::size_t least_ratio_to_build = 4, least_ratio_to_keep = 2;
-
-    /// What queries take in comparison with finding a pair by the search and removing it: to begin a query, and more
-    /// for each of its results than for one of the search.
-    static constexpr std::size_t pairs_per_query = 50, pairs_per_result = 2;
+    void count_tests(std::size_t opened) noexcept {
+        if (counted_ == instrumentation::counters) tests_counted_ += 8 * opened;
+    }
 
     std::unique_ptr<global_stage> search_;
     const collision_filter& filter_;
-    filtering when_;
     instrumentation counted_;
+    bool may_withhold_ = search_->finds_overlaps_only();  // whether an index finds what the search would
     std::uint64_t tests_counted_ = 0;
     membership objects_;
     frame_state frame_;
@@ -237,21 +319,28 @@ private:
     std::vector<place> places_;               // by id
     std::size_t searched_ = 0, indexed_ = 0;  // numbers of objects by place
     bool searches_ = true;                    // whether the search has the current frame
+    std::size_t found_ = 0, kept_pairs_ = 0;  // by the last search, before and after the filter
     std::vector<std::uint32_t> departures_;   // since the last frame, of objects in the index
-    box_index index_;
-    std::vector<box> kept_;              // by id, those of the frame in which the index was built
-    std::vector<std::uint32_t> movers_;  // present objects that do not rest
-    bool joins_ = false;                 // the sets are joined without a search
-    bool joins_next_ = false;            // the same from the next frame on
+    box_index index_;                         // of objects at rest
+    std::vector<box> kept_;                   // by id, those of the frame in which the index was built
+    std::vector<std::uint32_t> movers_;       // present objects that do not rest
+    std::size_t opened_ = 0, looked_up_ = 0;  // nodes and boxes, by the last queries of the index
+    double pairs_at_rest_ = 0;                // estimated, of the objects in the index when it was built
+    query_estimate index_nodes_;
+    regret index_regret_, rebuilding_regret_;
+    bool joins_ = false;       // the sets are joined without a search
+    bool wants_join_ = false;  // the same from the next frame on
     set_join join_;
-    std::size_t waiting_ = 0;  // frames times objects at rest that were searched since then
+    double pairs_in_sets_ = 0;  // estimated, and at first those that the search found in vain
+    query_estimate join_nodes_;
+    regret join_regret_;
 };
 
 }  // namespace
 
 std::unique_ptr<global_stage> filtered(std::unique_ptr<global_stage> search, const collision_filter& filter,
-                                       filtering when, instrumentation counted) {
-    return std::make_unique<filtered_stage>(std::move(search), filter, when, counted);
+                                       instrumentation counted) {
+    return std::make_unique<filtered_stage>(std::move(search), filter, counted);
 }
 
 }  // namespace aabb

@@ -31,6 +31,10 @@ struct cost_model {
     double sah_triangle = 115;    ///< building a tree by `sah`, per triangle
     double node_visit = 46;       ///< visiting a pair of nodes in a query, with its triangles (`work::node_visits`)
 
+    // Indices of objects that a filter keeps from the search (`aabb.collision_filter`).
+    double refit_box = 3;  ///< adjusting an index to a box
+    double open_node = 6;  ///< opening a node of an index in a query (an eighth of `work::box_tests`)
+
     friend bool operator==(const cost_model&, const cost_model&) = default;
 };
 
@@ -42,7 +46,7 @@ struct cost_info {
     std::string_view of;  ///< a short description of the work
 };
 
-inline constexpr std::array<cost_info, 15> cost_infos{{
+inline constexpr std::array<cost_info, 17> cost_infos{{
     {&cost_model::search_box, "search_box", "ns/box", "searching a box by columns"},
     {&cost_model::search_pair, "search_pair", "ns/pair", "finding a pair by columns"},
     {&cost_model::keep_box, "keep_box", "ns/box", "keeping a box with its Verlet list"},
@@ -58,6 +62,8 @@ inline constexpr std::array<cost_info, 15> cost_infos{{
     {&cost_model::median_triangle, "median_triangle", "ns/triangle", "building by median"},
     {&cost_model::sah_triangle, "sah_triangle", "ns/triangle", "building by sah"},
     {&cost_model::node_visit, "node_visit", "ns/visit", "visiting a pair of nodes"},
+    {&cost_model::refit_box, "refit_box", "ns/box", "adjusting an index to a box"},
+    {&cost_model::open_node, "open_node", "ns/node", "opening a node of an index"},
 }};
 
 /// The current costs, by default those of `cost_model`. Strategies read them when they plan.

@@ -70,26 +70,41 @@ concept PreparePolicy =
         { policy.before(std::move(search), counted) } -> std::same_as<std::unique_ptr<global_stage>>;
     };
 
-/// A broad phase behind a strategy that prepares its boxes, with the functions of `global_stage`. The two interact
-/// through the interface of a stage, by a few virtual calls per frame.
-template <PreparePolicy Prepare, class Search>
-class prepared_search {
+/// A broad phase whose strategies interact through the interface of a stage, by a few virtual calls per frame.
+class stage_search {
 public:
-    explicit prepared_search(const Prepare& prepare = {}, Search search = Search())
-        : stage_(prepare.before(std::make_unique<searched_by<Search>>(std::move(search)), instrumentation::none)) {}
+    explicit stage_search(std::unique_ptr<global_stage> stage) : stage_(std::move(stage)) {}
 
     [[nodiscard]] std::unique_ptr<scene_parts> divide(const mesh_scene& scene) { return stage_->divide(scene); }
     void insert(std::uint32_t id) { stage_->insert(id); }
     void remove(std::uint32_t id) { stage_->remove(id); }
     void update(std::span<const box> boxes) { stage_->update(boxes); }
     void search(std::vector<index_pair>& pairs) { stage_->search(pairs); }
+    [[nodiscard]] work_counters counters() const { return stage_->counters(); }
 
-    [[nodiscard]] friend std::vector<part_bytes> bytes_by_part(const prepared_search& search) {
+    [[nodiscard]] friend std::vector<part_bytes> bytes_by_part(const stage_search& search) {
         return search.stage_->bytes();
+    }
+    [[nodiscard]] friend std::unique_ptr<global_stage> stage_of(stage_search&& search) {
+        return std::move(search.stage_);
     }
 
 private:
     std::unique_ptr<global_stage> stage_;
+};
+
+/// A broad phase composed at compile time as a stage.
+template <SortPolicy Sort, PartitionPolicy Partition, SweepPolicy Sweep, CounterPolicy Counters>
+[[nodiscard]] std::unique_ptr<global_stage> stage_of(global_search<Sort, Partition, Sweep, Counters>&& search) {
+    return std::make_unique<searched_by<global_search<Sort, Partition, Sweep, Counters>>>(std::move(search));
+}
+
+/// A broad phase behind a strategy that prepares its boxes.
+template <PreparePolicy Prepare, class Search>
+class prepared_search : public stage_search {
+public:
+    explicit prepared_search(const Prepare& prepare = {}, Search search = Search())
+        : stage_search(prepare.before(stage_of(std::move(search)), instrumentation::none)) {}
 };
 
 }  // namespace aabb

@@ -15,7 +15,15 @@ struct part_bytes {
 };
 
 /// A decision that a stage made for the current scene.
-enum class plan_kind : std::uint8_t { columns, groups_of_columns, neighbour_list, static_frame };
+enum class plan_kind : std::uint8_t {
+    columns,
+    groups_of_columns,
+    neighbour_list,
+    static_frame,
+    filter,
+    resting_index,
+    set_join
+};
 struct stage_plan {
     plan_kind kind;
     statement decision;  ///< in words, with its numbers
@@ -46,6 +54,10 @@ public:
     /// `update` must still exist.
     /// @throws input_error if the last update failed or there was none
     virtual void search(std::vector<index_pair>& pairs) = 0;
+
+    /// Whether the pairs are those whose boxes overlap, and not also others, as within a distance. Then the pairs of
+    /// some objects may be found in another way.
+    [[nodiscard]] virtual bool finds_overlaps_only() const { return true; }
 
     /// The share of the last search's time that belongs to the update. It is 0 except for stages that defer sorting to
     /// the search, so that the sorted data are still in a cache.

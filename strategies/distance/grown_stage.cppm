@@ -32,6 +32,7 @@ public:
     }
     void search(std::vector<index_pair>& pairs) override { search_->search(pairs); }
 
+    [[nodiscard]] bool finds_overlaps_only() const override { return false; }
     [[nodiscard]] double share_of_update() const override { return search_->share_of_update(); }
     [[nodiscard]] work_counters counters() const override { return search_->counters(); }
     [[nodiscard]] std::vector<part_bytes> bytes() const override {

@@ -51,8 +51,11 @@ std::unique_ptr<local_stage> compose_within(const composition& c, double d, inst
         });
 }
 
-near_stages compose_near(const composition& c, double d, instrumentation counted) {
-    return {std::make_unique<grown_stage>(compose_global_search(c, counted), d), compose_within(c, d, counted)};
+near_stages compose_near(const composition& c, double d, const collision_filter* filter, instrumentation counted) {
+    std::unique_ptr<global_stage> search = compose_global_search(c, counted);
+    // Grown boxes of objects at rest are at rest, too, so a filter inside keeps them from the search.
+    if (filter != nullptr) search = filtered(std::move(search), *filter);
+    return {std::make_unique<grown_stage>(std::move(search), d), compose_within(c, d, counted)};
 }
 
 std::unique_ptr<distance_stage> compose_distance(const composition& c, instrumentation counted) {

@@ -3,6 +3,7 @@ export module aabb.distance_stages;
 
 export import aabb.distance_stage;
 export import aabb.registry;
+import aabb.collision_filter;
 import aabb.pipeline;
 import aabb.std;
 
@@ -21,8 +22,10 @@ struct near_stages {
     std::unique_ptr<global_stage> global;
     std::unique_ptr<local_stage> local;
 };
+/// @param filter which pairs of objects are searched, or null for all; must outlive the stages
 /// @throws input_error as `compose_within`, and on an invalid composition
-[[nodiscard]] near_stages compose_near(const composition& c, double d, instrumentation counted = instrumentation::none);
+[[nodiscard]] near_stages compose_near(const composition& c, double d, const collision_filter* filter = nullptr,
+                                       instrumentation counted = instrumentation::none);
 
 /// A `distance_detection` that measures distances of meshes through trees of the composition's build and tree.
 /// @throws input_error on an unknown build or tree

@@ -58,6 +58,58 @@ TEST_CASE("global search allocates nothing in steady state") {
     }
 }
 
+TEST_CASE("a filter allocates nothing in steady state, though indices are built and sets joined again and again") {
+    // Most boxes rest in the first half of a round; in the second, more than half of them wake. Both ways are worth it
+    // at once.
+    cost_model costs;
+    costs.refit_box = costs.open_node = 1e-9;
+    set_machine_costs(costs);
+    constexpr std::uint32_t n = 300;
+    constexpr int frames = 24;
+    for (const char* kind : {"rest", "sets"}) {
+        const bool has_sets = std::string_view(kind) == "sets";
+        INFO(kind);
+        collision_filter filter;
+        for (std::uint32_t id = 0; id < n; ++id)
+            filter.set(id, {.set = !has_sets ? object_set::none : id % 10 == 0 ? object_set::a : object_set::b});
+        filter.add_exceptions(std::vector<index_pair>{{1, 2}, {3, 40}});
+        const auto stage = filtered(global_of({}), filter);
+        for (std::uint32_t id = 0; id < n; ++id) stage->insert(id);
+        std::vector<std::vector<box>> boxes;
+        for (int frame = 0; frame < frames; ++frame) {
+            boxes.push_back(orbiting(has_sets ? frame % 3 : 0));
+            for (std::uint32_t id = 0; id < n; id += 10) boxes.back()[id] = orbiting(frame)[id];
+        }
+        std::vector<index_pair> pairs;
+        std::size_t new_allocations = 0, changes = 0;
+        for (int round = 0; round < 200 && (round < 4 || new_allocations > 0); ++round) {
+            new_allocations = changes = 0;
+            std::size_t indexed_before = 0;
+            for (int frame = 0; frame < frames; ++frame) {
+                const std::size_t before = allocations.made;
+                for (std::uint32_t id = 0; id < n && !has_sets; ++id)
+                    filter.set(id, {.rests = id % 10 != 0 && (frame < frames / 2 || (id % 2 != 0 && id % 10 != 1))});
+                // Then a join has another index.
+                if (frame % 4 == 0 && has_sets) frame % 8 == 0 ? stage->remove(7) : stage->insert(7);
+                pairs.clear();
+                stage->update(boxes[static_cast<std::size_t>(frame)]);
+                stage->search(pairs);
+                new_allocations += allocations.made - before;
+                std::size_t indexed = 0;
+                for (const stage_plan& plan : stage->plans())
+                    if (plan.kind == (has_sets ? plan_kind::set_join : plan_kind::resting_index))
+                        indexed = static_cast<std::size_t>(plan.decision[has_sets ? "stored" : "indexed"]);
+                changes += indexed != indexed_before && indexed > 0 ? 1 : 0;
+                indexed_before = indexed;
+            }
+        }
+        CHECK(new_allocations == 0);
+        CHECK(changes >= 2);
+        CHECK_FALSE(pairs.empty());
+    }
+    set_machine_costs({});
+}
+
 TEST_CASE("local detection allocates nothing in steady state") {
     for (const aabb::composition& composition : local_compositions()) {
         INFO(text_of_local(composition));

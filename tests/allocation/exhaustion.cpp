@@ -162,8 +162,7 @@ void require_exact_or_rejecting(Life life, bool frees_all, bool each = true) {
 }
 
 template <class Make>
-void require_exact_search(Make make, bool frees_all) {
-    const std::vector<frame> all_frames = frames();
+void require_exact_search(Make make, const std::vector<frame>& all_frames, bool frees_all) {
     const auto life = [&](exhausted_run& run) { return fault_of(*make(), all_frames, run); };
     // Afterwards libraries have allocated what they keep for the whole process, as TBB keeps its threads.
     exhausted_run first_run(0);
@@ -262,15 +261,42 @@ void require_exact_detection(Make make, bool frees_all, std::uint32_t squares = 
 TEST_CASE("a composed global search that runs out of memory is exact afterwards, or rejects calls", "[long]") {
     for (const aabb::composition& composition : global_compositions()) {
         INFO(text_of_global(composition));
-        require_exact_search([&] { return global_of(composition, instrumentation::counters); }, true);
+        require_exact_search([&] { return global_of(composition, instrumentation::counters); }, frames(), true);
     }
+}
+
+TEST_CASE("a filtered search that runs out of memory is exact afterwards, or rejects calls") {
+    // An index of those that rest, and a join of sets, are worth it at once.
+    cost_model costs;
+    costs.refit_box = costs.open_node = 1e-9;
+    set_machine_costs(costs);
+    for (const bool has_sets : {false, true}) {
+        collision_filter filter;
+        std::vector<frame> filtered_frames = frames();
+        for (std::uint32_t id = 0; id < objects + 4; ++id) {
+            if (has_sets)
+                filter.set(id, {.set = id % 3 == 0 ? object_set::a : object_set::b});
+            else if (id % 4 != 0)
+                filter.set(id, {.rests = true});
+            for (frame& later : filtered_frames)
+                if (filter[id].rests && id < objects) later.boxes[id] = filtered_frames[0].boxes[id];
+        }
+        for (frame& current : filtered_frames) {
+            current.pairs = {mark};
+            for (const index_pair p : overlapping(current.boxes, current.present))
+                if (filter.keeps(p.a, p.b)) current.pairs.push_back(p);
+        }
+        require_exact_search([&] { return filtered(global_of({}), filter, instrumentation::counters); },
+                             filtered_frames, true);
+    }
+    set_machine_costs({});
 }
 
 TEST_CASE("an engine for boxes that runs out of memory is exact afterwards, or rejects calls") {
     for (const engine_info& engine : engines()) {
         if (!engine.searches_boxes || breaks_permanently(engine.name)) continue;
         INFO(engine.name);
-        require_exact_search([&] { return make_box_engine(engine.name); }, !leaks_memory(engine.name));
+        require_exact_search([&] { return make_box_engine(engine.name); }, frames(), !leaks_memory(engine.name));
     }
 }
 

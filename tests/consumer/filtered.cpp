@@ -1,4 +1,4 @@
-// Three cubes in one place, of which some pairs are left out.
+// Three cubes in one place, of which a filter keeps some pairs.
 #include <cstdio>
 #include <vector>
 
@@ -36,11 +36,11 @@ int main() {
     filter.set(0, {.group = 1, .mask = 2});
     filter.set(1, {.group = 2, .rests = true});
     filter.set(2, {.group = 2, .rests = true});
-    filter.leave_out({1, 0});
+    filter.add_exception({1, 0});
     print_pairs("filtered", detector);
 
     aabb::collision_filter woken;
-    woken.leave_out({2, 1});
+    woken.add_exception({2, 1});
     using prepared = aabb::prepared_search<aabb::neighbour_list_prepare, search>;
     aabb::detector<aabb::filtered_search<prepared>> with_list{aabb::filtered_search<prepared>(woken)};
     for (unsigned id = 0; id < 3; ++id) with_list.insert(id);
@@ -49,6 +49,8 @@ int main() {
     aabb::auto_detector by_name({"sort=shell"}, aabb::many_frames, &woken);
     for (unsigned id = 0; id < 3; ++id) by_name.insert(id);
     print_pairs("by name", by_name);
-    woken.leave_out({0, 1});
+    woken.add_exception({0, 1});
     print_pairs("without 0 1:", by_name);
+    woken.remove_exception({2, 1});
+    print_pairs("with 1 2:", by_name);
 }

@@ -41,7 +41,7 @@ function(builds name flags)
     endif()
     prints(${WORK}/${name}/inside "1 component, closed\nframe 0: a_inside_b\nframe 1: apart\nframe 2: apart\n")
     prints(${WORK}/${name}/by_name "3 triangle pairs\n")
-    prints(${WORK}/${name}/filtered "all 0-1 0-2 1-2\nfiltered 0-2\nwoken 0-1 0-2\nby name 0-1 0-2\nwithout 0 1: 0-2\n")
+    prints(${WORK}/${name}/filtered "all 0-1 0-2 1-2\nfiltered 0-2\nwoken 0-1 0-2\nby name 0-1 0-2\nwithout 0 1: 0-2\nwith 1 2: 0-2 1-2\n")
     prints(${WORK}/${name}/meshes_by_type "${answers}")
 endfunction()
 

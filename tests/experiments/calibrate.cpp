@@ -119,7 +119,7 @@ TEST_CASE("calibrate measures every cost and checks it on held-out scenes") {
         CHECK(measured.costs.*cost.value > 0);
         CHECK(std::isfinite(measured.costs.*cost.value));
     }
-    CHECK(measured.checks.size() == 6);
+    CHECK(measured.checks.size() == 7);
     for (const aabblab::group_check& check : measured.checks) CHECK(check.held_out.observations > 0);
     CHECK(aabb::machine_costs() == aabb::cost_model{});
 }
@@ -223,8 +223,8 @@ TEST_CASE("calibrate saves its measurements and prints them as a table") {
     const program_result calibrated = user.run({"calibrate", "--quick"});
     INFO(calibrated.err);
     REQUIRE(calibrated.status == 0);
-    for (const char* part : {"cost ", "shipped", "95 %", "cut_subset ", "ns/visit", "Verlet lists", "worst",
-                             "aabblab calibrate --reset removes it"})
+    for (const char* part : {"cost ", "shipped", "95 %", "cut_subset ", "ns/visit", "Verlet lists",
+                             "indices of a filter", "worst", "aabblab calibrate --reset removes it"})
         CHECK(holds(calibrated.out, part));
     check_narrow(calibrated.out.substr(0, calibrated.out.find("wrote ")));
     const aabblab::calibrated_costs saved = aabblab::read_costs(user.file());

@@ -1,11 +1,15 @@
+#include <rapidcheck.h>
+
 #include <random>
 #include <set>
 
 #include "../meshes.hpp"
+#include "../strategies/costs.hpp"
 #include "../strategies/searches.hpp"
 #include "filtered_scenes.hpp"
 
 import aabb.auto_detector;
+import aabb.distance.grown_stage;
 import aabb.partition.none;
 import aabb.prepare.neighbour_list;
 import aabb.sort.insertion;
@@ -16,6 +20,21 @@ using namespace aabb;
 namespace {
 
 using plain_search = global_search<insertion_sort, none_partition, one_axis_sweep>;
+
+/// The same search for boxes within a distance of 0: it finds the same pairs, but a filter does not know that.
+std::unique_ptr<global_stage> of_all_objects(std::unique_ptr<global_stage> search) {
+    return std::make_unique<within_stage>(std::move(search), 0);
+}
+
+bool has_plan(const global_stage& stage, plan_kind kind) {
+    return std::ranges::count(stage.plans(), kind, &stage_plan::kind) > 0;
+}
+
+std::string text_of_plans(const global_stage& stage) {
+    std::string text;
+    for (const stage_plan& plan : stage.plans()) text += to_text(plan.decision) + "\n";
+    return text;
+}
 
 /// Boxes that all overlap.
 std::vector<box> pile(std::size_t n) {
@@ -95,19 +114,47 @@ TEST_CASE("two objects at rest are not tested, and exceptions hold in either ord
     filter.set(3, {});
     CHECK(filter.resting() == 1);
     CHECK(filter.keeps(3, 4));
-    filter.leave_out({4, 3});
-    filter.leave_out(std::vector<index_pair>{{9, 1}, {3, 4}, {0, 2}});
+    filter.add_exception({4, 3});
+    filter.add_exceptions(std::vector<index_pair>{{9, 1}, {3, 4}, {0, 2}, {2, 0}});
     CHECK_FALSE(filter.keeps(3, 4));
     CHECK_FALSE(filter.keeps(1, 9));
     CHECK_FALSE(filter.keeps(2, 0));
     CHECK(filter.keeps(1, 2));
-    const auto pairs = filter.exceptions();
-    CHECK(std::vector<index_pair>(pairs.begin(), pairs.end()) == std::vector<index_pair>{{0, 2}, {1, 9}, {3, 4}});
+    const auto exceptions = [&] { return sorted(filter.exceptions()); };
+    CHECK(exceptions() == std::vector<index_pair>{{0, 2}, {1, 9}, {3, 4}});
+    filter.remove_exception({9, 1});
+    CHECK(filter.keeps(1, 9));
+    CHECK(exceptions() == std::vector<index_pair>{{0, 2}, {3, 4}});
+    filter.remove_exceptions(std::vector<index_pair>{{4, 3}, {5, 6}, {2, 0}, {0, 2}});
+    CHECK(exceptions().empty());
+    CHECK(filter.keeps(0, 2));
+    CHECK(filter.keeps(3, 4));
+}
+
+TEST_CASE("any pair is an exception exactly from when it is added to when it is removed") {
+    REQUIRE(rc::check([] {
+        collision_filter filter;
+        std::set<index_pair> expected;
+        for (int call = 0; call < 6; ++call) {
+            const auto id = rc::gen::inRange<std::uint32_t>(0, 9);
+            std::vector<index_pair> pairs;
+            for (int i = *rc::gen::inRange(0, 9); i > 0; --i) pairs.push_back({*id, *id});
+            const bool adds = *rc::gen::inRange(0, 3) > 0;
+            adds ? filter.add_exceptions(pairs) : filter.remove_exceptions(pairs);
+            for (const auto [a, b] : pairs)
+                adds ? static_cast<void>(expected.insert(ordered_pair(a, b)))
+                     : static_cast<void>(expected.erase(ordered_pair(a, b)));
+            for (std::uint32_t a = 0; a < 12; ++a)
+                for (std::uint32_t b = 0; b < 12; ++b)
+                    RC_ASSERT(filter.keeps(a, b) == !expected.contains(ordered_pair(a, b)));
+            RC_ASSERT(sorted(filter.exceptions()) == std::vector<index_pair>(expected.begin(), expected.end()));
+        }
+    }));
 }
 
 TEST_CASE("a search that is filtered appends to what is there") {
     collision_filter filter;
-    filter.leave_out({0, 1});
+    filter.add_exception({0, 1});
     const auto stage = filtered(global_of({}), filter);
     insert_all(*stage, 3);
     std::vector<index_pair> pairs{{0, 1}};  // of someone else
@@ -120,30 +167,58 @@ TEST_CASE("a search that is filtered appends to what is there") {
 
 TEST_CASE("many objects at rest are searched in some frames, and then not at all") {
     row_with_movers scene(4000, 10);
-    std::map<filtering, std::uint64_t> tests;
-    for (const auto when : {filtering::early, filtering::late}) {
-        const auto stage =
-            filtered(global_of(composed({{strategy_kind::sort, "insertion"}}), instrumentation::counters), scene.filter,
-                     when, instrumentation::counters);
+    std::map<bool, std::uint64_t> tests;
+    for (const bool searches_all : {false, true}) {
+        auto search = global_of(composed({{strategy_kind::sort, "insertion"}}), instrumentation::counters);
+        if (searches_all) search = of_all_objects(std::move(search));
+        const auto stage = filtered(std::move(search), scene.filter, instrumentation::counters);
         insert_all(*stage, 4010);
         for (int frame = 0; frame < 20; ++frame) {
-            if (frame == 14) tests[when] = stage->counters()[work::box_tests];
+            if (frame == 14) tests[searches_all] = stage->counters()[work::box_tests];
             CHECK(found_by(*stage, scene.boxes(frame)) == scene.expected(frame));
         }
-        tests[when] = stage->counters()[work::box_tests] - tests[when];
+        tests[searches_all] = stage->counters()[work::box_tests] - tests[searches_all];
+        CHECK(has_plan(*stage, plan_kind::resting_index) == !searches_all);
+        CHECK(holds(text_of_plans(*stage),
+                    searches_all ? "all objects are searched: pairs need not overlap"
+                                 : "4000 objects at rest are in an index, in which 10 others are looked up"));
     }
     CHECK(scene.expected(3).size() > 10);
-    CHECK(tests[filtering::late] > 6 * 4000);
+    CHECK(tests[true] > 6 * 4000);
     // A query tests eight boxes in each node that it opens.
-    CHECK_BETWEEN(6 * 10 * 8, tests[filtering::early], 6 * 10 * 8 * 30);
+    CHECK_BETWEEN(6 * 10 * 8, tests[false], 6 * 10 * 8 * 30);
 }
 
-TEST_CASE("few objects at rest are searched with the others") {
-    row_with_movers scene(30, 10);
-    const auto stage = filtered(global_of({}), scene.filter, filtering::early, instrumentation::counters);
-    insert_all(*stage, 40);
-    for (int frame = 0; frame < 9; ++frame) CHECK(found_by(*stage, scene.boxes(frame)) == scene.expected(frame));
+TEST_CASE("few objects at rest among many are searched with them") {
+    row_with_movers scene(30, 100);
+    const auto stage = filtered(global_of({}), scene.filter, instrumentation::counters);
+    insert_all(*stage, 130);
+    for (int frame = 0; frame < 20; ++frame) CHECK(found_by(*stage, scene.boxes(frame)) == scene.expected(frame));
     CHECK(stage->counters()[work::box_tests] == 0);  // of the index
+    CHECK(holds(text_of_plans(*stage), "objects at rest are searched: no index is worth its cost yet"));
+    const std::size_t kept = scene.expected(19).size();
+    CHECK(holds(text_of_plans(*stage), "the filter kept " + std::to_string(kept) + " of " +
+                                           std::to_string(overlapping(scene.boxes(19)).size()) +
+                                           " pairs that the search found"));
+}
+
+TEST_CASE("an index of objects at rest is given up once others wake, and is built again when they rest") {
+    row_with_movers scene(400, 10);
+    const auto stage = filtered(global_of({}), scene.filter);
+    insert_all(*stage, 410);
+    std::vector<bool> uses_index;
+    for (int frame = 0; frame < 60; ++frame) {
+        const bool few_rest = frame >= 20 && frame < 40;
+        if (frame % 20 == 0)
+            for (std::uint32_t id = 0; id < 400; ++id) scene.filter.set(id, {.rests = id >= 360 || !few_rest});
+        std::vector<index_pair> expected = overlapping(scene.boxes(frame));
+        std::erase_if(expected, [&](index_pair p) { return p.b < 400 && (p.a >= 360 || !few_rest); });
+        CHECK(found_by(*stage, scene.boxes(frame)) == expected);
+        uses_index.push_back(has_plan(*stage, plan_kind::resting_index));
+    }
+    CHECK(uses_index[19]);
+    CHECK_FALSE(uses_index[39]);
+    CHECK(uses_index[59]);
 }
 
 TEST_CASE("objects that wake, that move although they rest, that leave and that come back are found") {
@@ -161,8 +236,9 @@ TEST_CASE("objects that wake, that move although they rest, that leave and that 
         return expected.size();
     };
     const std::size_t at_first = check();
-    for (int frame = 0; frame < 9; ++frame) check();  // until there is an index
-    boxes[199] = boxes[207];                          // moves, but rests
+    for (int frame = 0; frame < 9; ++frame) check();
+    CHECK(has_plan(*stage, plan_kind::resting_index));
+    boxes[199] = boxes[207];  // moves, but rests
     check();
     CHECK(check() > at_first);  // it overlaps one that moves
     rests[7] = false;           // wakes, where it is
@@ -246,7 +322,7 @@ TEST_CASE("two sets within which many boxes overlap are searched once, and then 
     // A pile of 300 boxes of set a, and a row of 40 of set b that moves through it.
     collision_filter filter;
     for (std::uint32_t id = 0; id < 340; ++id) filter.set(id, {.set = id < 300 ? object_set::a : object_set::b});
-    filter.leave_out({7, 310});
+    filter.add_exception({7, 310});
     std::vector<bool> present(340, true);
     const auto boxes = [](int frame) {
         std::vector<box> all;
@@ -257,12 +333,12 @@ TEST_CASE("two sets within which many boxes overlap are searched once, and then 
         }
         return all;
     };
-    std::map<filtering, std::uint64_t> tests;
-    for (const filtering when : {filtering::early, filtering::late}) {
+    std::map<bool, std::uint64_t> tests;
+    for (const bool searches_all : {false, true}) {
         present.assign(340, true);
-        const auto stage =
-            filtered(global_of(composed({{strategy_kind::sort, "insertion"}}), instrumentation::counters), filter, when,
-                     instrumentation::counters);
+        auto search = global_of(composed({{strategy_kind::sort, "insertion"}}), instrumentation::counters);
+        if (searches_all) search = of_all_objects(std::move(search));
+        const auto stage = filtered(std::move(search), filter, instrumentation::counters);
         insert_all(*stage, 340);
         std::size_t kept = 0;
         for (int frame = 0; frame < 12; ++frame) {
@@ -276,13 +352,16 @@ TEST_CASE("two sets within which many boxes overlap are searched once, and then 
             std::erase_if(expected, [](index_pair p) { return (p.a < 300) == (p.b < 300) || p == index_pair{7, 310}; });
             CHECK(found_by(*stage, boxes(frame)) == expected);
             kept += expected.size();
-            if (frame == 0) tests[when] = stage->counters()[work::box_tests];
+            if (frame == 0) tests[searches_all] = stage->counters()[work::box_tests];
         }
         CHECK(kept > 1000);
-        tests[when] = stage->counters()[work::box_tests] - tests[when];
+        tests[searches_all] = stage->counters()[work::box_tests] - tests[searches_all];
+        CHECK(has_plan(*stage, plan_kind::set_join) == !searches_all);
+        if (!searches_all)
+            CHECK(holds(text_of_plans(*stage), "sets a and b are joined: 40 boxes are looked up in an index of 300"));
     }
-    CHECK(tests[filtering::late] > 11 * 300 * 299 / 2);
-    CHECK(tests[filtering::early] < 11 * 40 * 300 * 2);
+    CHECK(tests[true] > 11 * 300 * 299 / 2);
+    CHECK(tests[false] < 11 * 40 * 300 * 2);
     // Without sets, all are searched again.
     for (std::uint32_t id = 0; id < 340; ++id) filter.set(id, {});
     const auto stage = filtered(global_of({}), filter);
@@ -301,21 +380,61 @@ TEST_CASE("two sets within which many boxes overlap are searched once, and then 
     }
 }
 
+TEST_CASE("a join ends once searching both sets costs less, and begins again") {
+    // Two sets of 300 boxes: piles in the first frames and in the last, apart from each other and from all meanwhile.
+    collision_filter filter;
+    for (std::uint32_t id = 0; id < 600; ++id) filter.set(id, {.set = id % 2 == 0 ? object_set::a : object_set::b});
+    const auto boxes = [](int frame) {
+        std::vector<box> all;
+        for (int id = 0; id < 600; ++id) {
+            const bool in_pile = frame < 10 || frame >= 300;
+            const auto low = static_cast<float>(in_pile ? 1000 * (id % 2) + id % 7 : 3 * id + frame % 3);
+            all.push_back({{low, low, low}, {low + 4, low + 4, low + 4}});
+        }
+        return all;
+    };
+    const auto stage = filtered(global_of({}), filter);
+    insert_all(*stage, 600);
+    std::vector<bool> joins;
+    for (int frame = 0; frame < 310; ++frame) {
+        std::vector<index_pair> expected = overlapping(boxes(frame));
+        std::erase_if(expected, [](index_pair p) { return p.a % 2 == p.b % 2; });
+        REQUIRE(found_by(*stage, boxes(frame)) == expected);
+        joins.push_back(has_plan(*stage, plan_kind::set_join));
+    }
+    CHECK(joins[9]);
+    CHECK_FALSE(joins[299]);
+    CHECK(holds(text_of_plans(*stage), "sets a and b are joined: 300 boxes are looked up in an index of 300"));
+    CHECK(joins[309]);
+}
+
+TEST_CASE("small sets without pairs of their own are searched together") {
+    collision_filter filter;
+    for (std::uint32_t id = 0; id < 200; ++id) filter.set(id, {.set = id < 100 ? object_set::a : object_set::b});
+    std::vector<box> boxes;
+    for (int id = 0; id < 200; ++id) boxes.push_back(cube(static_cast<float>(2 * (id % 100)), 1));
+    const auto stage = filtered(global_of({}), filter);
+    insert_all(*stage, 200);
+    for (int frame = 0; frame < 30; ++frame) CHECK(found_by(*stage, boxes).size() == 100);
+    CHECK_FALSE(has_plan(*stage, plan_kind::set_join));
+    CHECK(holds(text_of_plans(*stage), "both sets are searched: no join is worth its cost yet"));
+}
+
 TEST_CASE("the index holds its memory for objects at rest only") {
     row_with_movers scene(1000, 10);
-    const auto bytes = [&](filtering when) {
-        const auto stage = filtered(global_of({}), scene.filter, when);
+    const auto bytes = [&](bool searches_all) {
+        const auto stage = filtered(searches_all ? of_all_objects(global_of({})) : global_of({}), scene.filter);
         insert_all(*stage, 1010);
         for (int frame = 0; frame < 12; ++frame) found_by(*stage, scene.boxes(frame));
         return bytes_of_part(stage->bytes(), "prepare");
     };
-    CHECK(bytes(filtering::late) < 1010 * 4);
-    CHECK(bytes(filtering::early) > 1000 * (sizeof(box) + sizeof(box)));
+    CHECK(bytes(true) < 1010 * 4);
+    CHECK(bytes(false) > 1000 * (sizeof(box) + sizeof(box)));
 }
 
 TEST_CASE("detectors take a filter, composed at compile time or at run time") {
     collision_filter filter;
-    filter.leave_out({2, 0});
+    filter.add_exception({2, 0});
     const std::vector<index_pair> expected{{0, 1}, {1, 2}};
     const std::vector<box> boxes = pile(3);
     const auto check = [&](auto& tested) {
@@ -336,9 +455,11 @@ TEST_CASE("detectors take a filter, composed at compile time or at run time") {
     std::set<std::pair<std::uint32_t, std::uint32_t>> objects;
     for (const contact& c : of_meshes.contacts(poses)) objects.emplace(c.a, c.b);
     CHECK(objects == std::set<std::pair<std::uint32_t, std::uint32_t>>{{0, 1}, {1, 2}});
-    filter.leave_out(std::vector<index_pair>{{0, 1}, {1, 2}});
+    filter.add_exceptions(std::vector<index_pair>{{0, 1}, {1, 2}});
     CHECK(of_meshes.contacts(poses).empty());
     CHECK(by_name.pairs(boxes).empty());
+    filter.remove_exceptions(std::vector<index_pair>{{0, 1}, {0, 2}, {1, 2}});
+    CHECK(by_name.pairs(boxes).size() == 3);
 }
 
 TEST_CASE("a counted search that is filtered has its counters") {

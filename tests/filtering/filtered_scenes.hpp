@@ -36,13 +36,15 @@ struct stated_filter {
                                                  : aabb::object_set::none;
             filter.set(id, {.group = group[id], .mask = mask[id], .set = of_set, .rests = rests[id]});
         }
+        const std::vector<aabb::index_pair> before(filter.exceptions().begin(), filter.exceptions().end());
+        filter.remove_exceptions(before);
         std::vector<aabb::index_pair> pairs;
         for (const auto& [a, b] : exceptions) pairs.push_back({a, b});
-        filter.leave_out(pairs);
+        filter.add_exceptions(pairs);
     }
 };
 
-/// The ways to leave out pairs; the last one is all of them at once.
+/// The parts of a filter; the last one is all of them at once.
 inline const std::vector<std::string> filter_kinds{"groups", "masks", "sets", "rest", "exceptions", "together"};
 
 /// Changes some objects at random.
@@ -64,6 +66,7 @@ inline void draw(stated_filter& filter, const std::string& kind, std::mt19937& r
         if (kind == "sets" || together) filter.set[id] = n % 2 == 0 ? "abbbbbbb"[random() % 8] : "ab\0"[random() % 3];
         if (kind == "rest" || together) filter.rests[id] = random() % 16 != 0;
     }
+    if (one_in > 1) std::erase_if(filter.exceptions, [&](const auto&) { return random() % one_in == 0; });
     if ((kind == "exceptions" || together) && n > 1)
         for (std::uint32_t i = 0; i < 2 * n / one_in; ++i) {
             const auto a = static_cast<std::uint32_t>(random() % n);
@@ -123,11 +126,31 @@ inline const std::vector<filtered_scene>& filtered_scenes(const std::string& kin
     return of_kind;
 }
 
+/// In how many frames pairs were found otherwise than by the search of all objects.
+struct filter_usage {
+    std::size_t indexed = 0;  ///< some objects at rest were in an index
+    std::size_t joined = 0;   ///< two sets were joined
+
+    void add(const aabb::global_stage& stage) {
+        for (const aabb::stage_plan& plan : stage.plans()) {
+            indexed += plan.kind == aabb::plan_kind::resting_index ? 1 : 0;
+            joined += plan.kind == aabb::plan_kind::set_join ? 1 : 0;
+        }
+    }
+};
+
+/// Costs by which an index and a join are worth it at once.
+inline aabb::cost_model costs_for_indices() {
+    aabb::cost_model costs;
+    costs.refit_box = costs.open_node = 1e-9;
+    return costs;
+}
+
 /// The first frame in which the stage does not find what is kept; -1 if it always does.
 inline int first_wrong_frame(std::unique_ptr<aabb::global_stage> search, const filtered_scene& scene,
-                             aabb::filtering when = aabb::filtering::early) {
+                             filter_usage* usage = nullptr) {
     aabb::collision_filter filter;
-    const auto stage = filtered(std::move(search), filter, when);
+    const auto stage = filtered(std::move(search), filter);
     std::vector<bool> present;
     for (std::size_t f = 0; f < scene.frames.size(); ++f) {
         const filtered_scene::frame& frame = scene.frames[f];
@@ -140,6 +163,7 @@ inline int first_wrong_frame(std::unique_ptr<aabb::global_stage> search, const f
         const bool any_yet = f > 0 || !frame.toggled.empty();
         const auto boxes = std::span(frame.boxes).first(any_yet ? frame.boxes.size() : 0);
         if (found_by(*stage, boxes) != frame.pairs) return static_cast<int>(f);
+        if (usage) usage->add(*stage);
     }
     return -1;
 }
