@@ -41,6 +41,8 @@ std::string json_of(const contacts_request& request, const search_method& method
     summary["exact_for"] = nullptr;
     if (method.exact) summary["exact_for"] = exact_for_meshes;
     if (request.within) summary["within"] = *request.within;
+    if (request.filter.groups) summary["groups"] = visible(*request.filter.groups);
+    if (request.filter.except) summary["except"] = visible(*request.filter.except);
     return summary.dump() + "\n";
 }
 

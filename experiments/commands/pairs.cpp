@@ -41,6 +41,8 @@ std::string json_of(const pairs_request& request, const search_method& method, c
         summary["within"] = *request.within;
         summary["metric"] = is_by_axis(request) ? "axis" : "euclidean";
     }
+    if (request.filter.groups) summary["groups"] = visible(*request.filter.groups);
+    if (request.filter.except) summary["except"] = visible(*request.filter.except);
     return summary.dump() + "\n";
 }
 

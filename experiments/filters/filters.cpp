@@ -33,6 +33,8 @@ public:
         if (!next_line())
             throw aabb::input_error(
                 fmt::format("{}: is empty; expected the header {}", file.string(), fmt::join(known, ",")));
+        if (is_number(cells_[0]))
+            fail(fmt::format("there is no header; expected {} before the first row", fmt::join(known, ",")));
         for (const std::string_view cell : cells_) {
             if (std::ranges::find(known, cell) == known.end()) fail(aabb::unknown_name("column", cell, known));
             if (std::ranges::find(columns_, cell) != columns_.end())
@@ -106,6 +108,10 @@ private:
         std::uint32_t number = 0;
         const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), number, base);
         return error == std::errc() && rest == text.data() + text.size() ? std::optional(number) : std::nullopt;
+    }
+
+    [[nodiscard]] static bool is_number(std::string_view text) {
+        return text.find_first_not_of("+-.0123456789") == std::string_view::npos && !text.empty();
     }
 
     bool next_line() {
