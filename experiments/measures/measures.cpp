@@ -1,5 +1,6 @@
 module aabblab.measures;
 
+import aabb.collision_filter;
 import aabb.pipeline;
 import aabb.prepare.mean_extent;
 import aabb.registry;
@@ -56,6 +57,17 @@ double overlapping_pairs(std::vector<float> lower, std::vector<float> upper) {
 double longest_edge(const aabb::box& b) {
     const auto edge = [&](int k) { return double{b.max[k]} - double{b.min[k]}; };
     return std::max({edge(0), edge(1), edge(2)});
+}
+
+/// The pairs of overlapping boxes, whatever a filter keeps.
+std::vector<aabb::index_pair> unfiltered_pairs(const recorded_frame& frame) {
+    const auto search = aabb::compose_global_search(/*c=*/{}, aabb::instrumentation::none);
+    for (std::uint32_t id = 0; id < frame.boxes.size(); ++id)
+        if (frame.present[id]) search->insert(id);
+    std::vector<aabb::index_pair> pairs;
+    search->update(frame.boxes);
+    search->search(pairs);
+    return pairs;
 }
 
 /// The longest edge of all boxes over the median of their longest edges; empty if that is 0.
@@ -167,7 +179,13 @@ scene_measures measure_scene(scene_frames& scene) {
                 const std::vector<aabb::box> boxes = current.present_boxes();
                 m.boxes = measure_boxes(boxes);
                 m.present = boxes.size();
-                const auto pairs = static_cast<double>(frame.pairs.size());
+                auto pairs = static_cast<double>(frame.pairs.size());
+                if (scene.filter() && !boxes.empty()) {
+                    std::vector<aabb::index_pair> overlapping = unfiltered_pairs(current);
+                    pairs = static_cast<double>(overlapping.size());
+                    scene.filter()->apply(overlapping);
+                    m.kept = pairs > 0 ? static_cast<double>(overlapping.size()) / pairs : 1;
+                }
                 m.pairs_per_object = pairs / static_cast<double>(std::max<std::size_t>(boxes.size(), 1));
                 m.clustering = m.boxes.expected_pairs > 0 ? pairs / m.boxes.expected_pairs : 0;
                 axis = static_cast<std::size_t>(std::ranges::min_element(m.boxes.overlaps) - m.boxes.overlaps.begin());
@@ -205,6 +223,7 @@ table measures_table(const scene_measures& m) {
                           ", the longest of all edges over the median box's longest");
     add("pairs", fmt::format("{:.3g} overlapping pairs per object", m.pairs_per_object));
     add("clustering", fmt::format("{:.3g} times the pairs of uniformly distributed boxes", m.clustering));
+    if (m.kept) add("filter", fmt::format("keeps {:.3g} % of the overlapping pairs", 100 * *m.kept));
     if (!m.motion) return measured;
     const double unit = m.boxes.typical_extent > 0 ? m.boxes.typical_extent : 1;
     const char* unit_name = m.boxes.typical_extent > 0 ? "typical extents" : "units";

@@ -37,6 +37,7 @@ struct scene_measures {
     box_measures boxes;                     ///< of frame 0
     double pairs_per_object = 0;            ///< overlapping pairs per object in frame 0
     double clustering = 0;                  ///< pairs of frame 0 over `expected_pairs`
+    std::optional<double> kept;             ///< share of these pairs that the scene's filter keeps; empty without one
     std::optional<motion_measures> motion;  ///< empty for a single frame
     double turnover = 0;                    ///< share of the objects that appear or disappear per frame
 };
