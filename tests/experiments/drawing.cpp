@@ -21,6 +21,7 @@ struct parsed_drawing {
     std::vector<colour> colours;
     std::vector<std::array<std::size_t, 3>> faces;
     std::vector<std::array<std::size_t, 2>> edges;
+    std::vector<std::size_t> points;  ///< of OBJ
 
     /// Whether all corners of a face are red.
     [[nodiscard]] bool is_red(std::size_t face) const {
@@ -119,6 +120,7 @@ parsed_drawing parse_obj(const std::string& text) {
         std::istringstream words(line);
         std::string statement;
         words >> statement;
+        if (statement == "#") continue;
         std::vector<double> numbers;
         for (std::string word; words >> word;) numbers.push_back(std::strtod(word.c_str(), nullptr));
         const auto index = [&](std::size_t i) {
@@ -140,6 +142,7 @@ parsed_drawing parse_obj(const std::string& text) {
         } else {
             REQUIRE(statement == "p");
             REQUIRE(drawing.colours[index(0)] == black);
+            drawing.points.push_back(index(0));
         }
     }
     return drawing;
@@ -248,6 +251,48 @@ TEST_CASE_METHOD(two_tetrahedra, "collide --draw writes both meshes, red where t
     CHECK(apart.vertices.size() == 8);
     CHECK(apart.red_faces().empty());
     CHECK(apart.edges.empty());
+}
+
+TEST_CASE_METHOD(two_tetrahedra, "collide --draw moves meshes far from the origin to it, and says where they were") {
+    const std::vector<std::string> at_origin{"collide", mesh, mesh, "--pose-b", pose};
+    const std::vector<std::string> far_off{"collide",
+                                           mesh,
+                                           mesh,
+                                           "--pose-a",
+                                           "1,0,0,500000,0,1,0,-5000000,0,0,1,0",
+                                           "--pose-b",
+                                           "1,0,0,500000.25,0,1,0,-4999999.75,0,0,1,0"};
+    run_well(joined(at_origin, {"--draw", folder / "near.ply"}));
+    const program_result result = run_well(joined(far_off, {"--draw", folder / "far.ply"}));
+    const parsed_drawing near = parse_ply(bytes_of_file(folder / "near.ply"));
+    const std::string text = bytes_of_file(folder / "far.ply");
+    const parsed_drawing far = parse_ply(text);
+    const std::string origin = "relative to 500000.625 -4999999.375 0\n";
+    CHECK(holds(text, "\ncomment " + origin));
+    CHECK(holds(result.err, "far.ply has coordinates " + origin));
+    CHECK(far.faces == near.faces);
+    CHECK(far.red_faces() == near.red_faces());
+    CHECK(far.edges == near.edges);
+    REQUIRE(far.vertices.size() == near.vertices.size());
+    for (std::size_t v = 0; v < near.vertices.size(); ++v) {
+        const point expected{near.vertices[v][0] - 0.625, near.vertices[v][1] - 0.625, near.vertices[v][2]};
+        for (std::size_t k = 0; k < 3; ++k) CHECK(std::abs(far.vertices[v][k] - expected[k]) < 1e-9);
+    }
+    run_well(joined(far_off, {"--draw", folder / "far.obj"}));
+    CHECK(bytes_of_file(folder / "far.obj").starts_with("# " + origin));
+    CHECK(parse_obj(bytes_of_file(folder / "far.obj")).vertices == far.vertices);
+    // Not where they lie beside the origin.
+    CHECK(!holds(bytes_of_file(folder / "near.ply"), "relative"));
+}
+
+TEST_CASE_METHOD(two_tetrahedra, "collide --draw shows as points what is too short to have two ends in double") {
+    const std::string far = ",0,1,0,1e16,0,0,1,1e16";
+    run_well({"collide", mesh, mesh, "--pose-a", "1,0,0,1e16" + far, "--pose-b",
+              "0.5,0,0,1e16,0,0.5,0,1e16,0,0,0.5,1e16", "--draw", folder / "d.obj"});
+    const parsed_drawing drawing = parse_obj(bytes_of_file(folder / "d.obj"));
+    CHECK(!drawing.points.empty());
+    CHECK(!drawing.red_faces().empty());
+    for (const auto& [p, q] : drawing.edges) CHECK(drawing.vertices[p] != drawing.vertices[q]);
 }
 
 TEST_CASE_METHOD(two_tetrahedra, "collide --draw leaves out what --touching=no does, and draws one mesh with --self") {

@@ -1,6 +1,7 @@
 module aabblab.drawing;
 
 import aabblab.fmt;
+import aabblab.output;
 
 namespace aabblab {
 
@@ -83,20 +84,50 @@ void hit_drawing::add_hit(triangle_of s, triangle_of t, const aabb::triangle_int
     paint_red(t);
     std::array<std::uint32_t, 6> corners{};
     for (std::uint32_t i = 0; i < common.size; ++i) corners[i] = add_curve_vertex(common.corners[i]);
-    if (common.size == 1) points_.push_back(corners[0]);
-    if (common.size == 2) lines_.push_back({corners[0], corners[1]});
-    if (common.size > 2)  // around a polygon
-        for (std::uint32_t i = 0; i < common.size; ++i) lines_.push_back({corners[i], corners[(i + 1) % common.size]});
+    const std::uint32_t lines = common.size == 2 ? 1 : common.size;  // of a polygon, around it
+    const std::size_t before = lines_.size();
+    for (std::uint32_t i = 0; i < lines; ++i)
+        if (const std::uint32_t from = corners[i], to = corners[(i + 1) % common.size]; from != to)
+            lines_.push_back({from, to});
+    // A point, or what is too short to have two ends once they are rounded.
+    if (lines_.size() == before) points_.push_back(corners[0]);
+}
+
+/// Many programs read coordinates as floats, and show meshes far from the origin as steps. Where floats would keep
+/// fewer than 12 bits of the extent, coordinates become differences from their middle. These are exact, since both
+/// numbers are nearly equal (Sterbenz, "Floating-point computation", 1974).
+void hit_drawing::move_to_origin() {
+    if (vertices_.empty()) return;
+    aabb::vec3d low = vertices_.front(), high = low;
+    double half_extent = 0;
+    for (int k = 0; k < 3; ++k) {
+        for (const aabb::vec3d& v : vertices_) {
+            low[k] = std::min(low[k], v[k]);
+            high[k] = std::max(high[k], v[k]);
+        }
+        half_extent = std::max(half_extent, high[k] / 2 - low[k] / 2);
+    }
+    for (int k = 0; k < 3; ++k) {
+        if (!(std::min(std::abs(low[k]), std::abs(high[k])) > 0x1p12 * half_extent)) continue;
+        origin_[k] = low[k] / 2 + high[k] / 2;
+        for (aabb::vec3d& v : vertices_) v[k] -= origin_[k];
+    }
 }
 
 std::string hit_drawing::ply_header() const {
     std::string text = "ply\nformat ascii 1.0\ncomment triangles that intersect are red, their intersections black\n";
+    if (origin_ != aabb::vec3d{}) text += "comment " + origin_text() + "\n";
     text += fmt::format("element vertex {}\n", vertices_.size());
     for (const char axis : {'x', 'y', 'z'}) text += fmt::format("property double {}\n", axis);
     for (const char* const part : {"red", "green", "blue"}) text += fmt::format("property uchar {}\n", part);
     text += fmt::format("element face {}\nproperty list uchar int vertex_indices\n", triangles_.size());
     text += fmt::format("element edge {}\nproperty int vertex1\nproperty int vertex2\n", lines_.size());
     return text + "end_header\n";
+}
+
+std::string hit_drawing::origin_text() const {
+    return "relative to " + aabb::shortest(origin_[0]) + " " + aabb::shortest(origin_[1]) + " " +
+           aabb::shortest(origin_[2]);
 }
 
 /// Writes vertices, triangles and lines; OBJ counts from 1, has colours from 0 to 1, and names points, too.
@@ -129,9 +160,14 @@ void hit_drawing::write_elements(bool is_ply) {
 
 void hit_drawing::commit() {
     if (vertices_.size() > 0x7fffffff) throw aabb::input_error(name_.string() + ": too many vertices to draw");
-    if (is_ply_file(name_)) file_.write(ply_header());
+    move_to_origin();
+    if (is_ply_file(name_))
+        file_.write(ply_header());
+    else if (origin_ != aabb::vec3d{})
+        file_.write("# " + origin_text() + "\n");
     write_elements(is_ply_file(name_));
     file_.commit();
+    if (origin_ != aabb::vec3d{}) note(name_.string() + " has coordinates " + origin_text());
 }
 
 }  // namespace aabblab

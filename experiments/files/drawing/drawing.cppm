@@ -9,7 +9,8 @@ export namespace aabblab {
 
 /// A PLY or OBJ file of meshes at poses: triangles that intersect are red, and what they have in common is drawn in
 /// black lines and points. Colours belong to vertices, which most programs show, so that a red triangle has vertices of
-/// its own. Triangles keep their order. The file appears only when it is committed.
+/// its own. Triangles keep their order. Meshes far from the origin are moved to it. The file appears only when it is
+/// committed.
 class hit_drawing {
 public:
     /// @param option the option that names the file, for messages
@@ -35,12 +36,15 @@ private:
     std::uint32_t add_vertex(const aabb::vec3d& at, const colour& painted);
     std::uint32_t add_curve_vertex(const aabb::vec3d& at);
     void paint_red(triangle_of t);
+    void move_to_origin();
     [[nodiscard]] std::string ply_header() const;
+    [[nodiscard]] std::string origin_text() const;
     void write_elements(bool is_ply);
 
     std::filesystem::path name_;
     output_file file_;
     std::vector<aabb::vec3d> vertices_;
+    aabb::vec3d origin_{};  // of the vertices in the file
     std::vector<colour> colours_;
     std::vector<std::array<std::uint32_t, 3>> triangles_;  // of all objects
     std::vector<bool> is_red_;                             // by triangle
