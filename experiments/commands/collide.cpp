@@ -72,15 +72,14 @@ void add_relations(nlohmann::ordered_json& summary, const collide_request& reque
     summary["inside"] = inside.empty() || request.poses_of_b ? inside : inside.front();
     if (request.relation) summary["meeting"] = meeting.empty() || request.poses_of_b ? meeting : meeting.front();
     for (const surface_summary& surface : result.surfaces)
-        summary["surfaces"].push_back({{"components", surface.components},
-                                       {"closed", surface.closed},
-                                       {"open_edges", surface.open_edges},
-                                       {"oriented", surface.oriented},
-                                       {"inward", surface.inward},
-                                       {"intersects_itself", nullptr}});
-    if (request.relation)
-        for (std::size_t mesh = 0; mesh < result.surfaces.size(); ++mesh)
-            summary["surfaces"][mesh]["intersects_itself"] = result.surfaces[mesh].intersects_itself.value_or(false);
+        summary["surfaces"].push_back(
+            {{"components", surface.components},
+             {"open", surface.open},
+             {"open_edges", surface.open_edges},
+             {"unoriented", surface.unoriented},
+             {"inward", surface.inward},
+             {"self_intersecting",
+              surface.self_intersecting ? nlohmann::ordered_json(*surface.self_intersecting) : nullptr}});
     summary["relation_ms"] = result.relation_ms;
 }
 
@@ -187,11 +186,12 @@ void reject_contradictions(const collide_request& request) {
         reject_if(!request.touching && request.self == "all",
                   "--self=all is about triangles that touch; give --touching=no with plain --self");
     }
-    reject_if(request.within && (!request.self.empty() || request.geometry || !request.touching),
-              "--within finds triangles of two meshes that need not intersect; omit --self, --geometry and --touching");
-    reject_if(request.distance &&
-                  (!request.self.empty() || request.within || request.first || request.count || request.geometry ||
-                   request.out || request.exit_code || !request.touching || request.repeats > 1),
+    reject_if(request.within && (!request.self.empty() || request.geometry || request.relation || !request.touching),
+              "--within finds triangles of two meshes that need not intersect; omit --self, --geometry, --relation and "
+              "--touching");
+    reject_if(request.distance && (!request.self.empty() || request.within || request.first || request.count ||
+                                   request.geometry || request.relation || request.out || request.draw ||
+                                   request.exit_code || !request.touching || request.repeats > 1),
               "--distance measures two meshes; beside it, give only poses, --build, --tree and --json");
     reject_if(request.poses[1] && request.poses_of_b, "--pose-b and --poses both set the pose of B; give one of them");
     reject_if(request.first && request.count, "--first and --count exclude each other");

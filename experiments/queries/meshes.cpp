@@ -245,6 +245,9 @@ mesh_result search_meshes(const mesh_query& query, const search_choice& choice, 
     traits.frames = 1;  // every query is timed on its own: nothing is reused between them
     mesh_result result;
     result.method = method_of(choice, traits);
+    if (query.relations && !result.method.exact)
+        throw aabb::input_error(
+            fmt::format("--relation needs every intersecting pair, but {} is inexact", result.method.name));
     std::optional<stage_runner> searcher;
     const wall_stopwatch building;
     searcher.emplace(std::move(result.method.run_stages), scene);
@@ -256,16 +259,7 @@ mesh_result search_meshes(const mesh_query& query, const search_choice& choice, 
     const bool neighbours_too = query.self == self_pairs::all && !result.method.exact && query.ask != query_kind::count;
     pair_record record(query, scene, result, rows, drawing);
     const std::vector<aabb::mesh>& searched = scene.meshes()->meshes;
-    const auto intersects_itself = [&](std::uint32_t mesh) {
-        bool intersects = false;
-        searcher->each_self_pair(mesh, [&](aabb::index_pair pair) {
-            intersects = is_reported(searched[mesh], pair, self_pairs::intersecting);
-            return intersects;
-        });
-        return intersects;
-    };
-    relation_search relations(searched.front(), searched.back(),
-                              query.relations ? relation_search::self_query(intersects_itself) : nullptr);
+    relation_search relations(searched.front(), searched.back());
     // Which pairs only touch is known once they are stored.
     mesh_query search = query;
     if (!query.hits.touching) search.ask = query_kind::pairs;
@@ -304,7 +298,7 @@ mesh_result search_meshes(const mesh_query& query, const search_choice& choice, 
     }
     if (query.self && query.ask != query_kind::first)
         result.degenerate = count_degenerate(scene.meshes()->meshes.front());
-    result.surfaces.assign(relations.surfaces().begin(), relations.surfaces().end());
+    result.surfaces = relations.surfaces();
     result.relation_ms = relations.ms();
     result.bytes = searcher->local_bytes();
     result.bytes_per_triangle = bytes_per_triangle_of(result);

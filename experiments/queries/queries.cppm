@@ -181,9 +181,9 @@ struct intersecting_pair {
 /// The surface of a mesh, as far as it matters for what lies inside it.
 struct surface_summary {
     std::uint32_t components = 0;
-    std::uint32_t closed = 0, oriented = 0, inward = 0;  ///< of the components
-    std::uint64_t open_edges = 0;                        ///< edges of an odd number of triangles
-    std::optional<bool> intersects_itself = {};          ///< if asked, of a mesh with a closed component
+    std::vector<std::uint32_t> open, unoriented, inward;               ///< components; those of the second are closed
+    std::uint64_t open_edges = 0;                                      ///< edges of an odd number of triangles
+    std::optional<std::vector<std::uint32_t>> self_intersecting = {};  ///< components, if a relation depended on it
 };
 
 /// How two meshes lie at a pose.
@@ -197,10 +197,8 @@ struct mesh_relation {
 /// pose, trees and components are prepared once.
 class relation_search {
 public:
-    /// Whether mesh 0 or 1 intersects itself; empty unless asked, since it takes longer than all else.
-    using self_query = std::function<bool(std::uint32_t mesh)>;
     /// @param a,b must outlive this object
-    relation_search(const aabb::mesh& a, const aabb::mesh& b, self_query intersects_itself);
+    relation_search(const aabb::mesh& a, const aabb::mesh& b);
     ~relation_search();
 
     /// At poses at which no triangles intersect.
@@ -209,7 +207,7 @@ public:
     [[nodiscard]] mesh_relation at(const aabb::pose& pose_a, const aabb::pose& pose_b,
                                    std::span<const aabb::index_pair> hits);
     /// Of A and B; empty if every pose was decided by the boxes.
-    [[nodiscard]] std::span<const surface_summary> surfaces() const;
+    [[nodiscard]] std::vector<surface_summary> surfaces() const;
     /// The time of all decisions.
     [[nodiscard]] double ms() const;
 

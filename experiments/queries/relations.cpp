@@ -10,60 +10,86 @@ namespace aabblab {
 
 namespace {
 
-surface_summary summary_of(const aabb::enclosure<aabb::implicit_tree>& mesh, std::optional<bool> intersects_itself) {
+using solid = aabb::enclosure<aabb::implicit_tree>;
+
+/// A mesh prepared for relations of both kinds.
+struct prepared_surface {
+    solid whole;
+    aabb::contact_surface<aabb::implicit_tree> contacts{whole};
+
+    explicit prepared_surface(const aabb::mesh& m) : whole(m, aabb::median_build{}) {}
+    prepared_surface(const prepared_surface&) = delete;  // since `contacts` refers to `whole`
+};
+
+surface_summary summary_of(const prepared_surface& surface) {
     surface_summary summary;
-    summary.intersects_itself = intersects_itself;
-    for (const aabb::surface_component& part : mesh.parts()) {
-        ++summary.components;
-        summary.closed += static_cast<std::uint32_t>(part.is_closed());
-        summary.oriented += static_cast<std::uint32_t>(part.is_oriented);
-        summary.inward += static_cast<std::uint32_t>(part.faces_inward());
+    for (const aabb::surface_component& part : surface.whole.parts()) {
+        const std::uint32_t component = summary.components++;
+        if (!part.is_closed()) summary.open.push_back(component);
+        if (part.is_closed() && !part.is_oriented) summary.unoriented.push_back(component);
+        if (part.faces_inward()) summary.inward.push_back(component);
         summary.open_edges += part.open_edges;
     }
+    const std::vector<bool>& self_intersecting = surface.contacts.self_intersecting();
+    if (self_intersecting.empty()) return summary;
+    summary.self_intersecting.emplace();
+    for (std::uint32_t component = 0; component < summary.components; ++component)
+        if (self_intersecting[component]) summary.self_intersecting->push_back(component);
     return summary;
 }
 
-/// Sentences about what is unusual in a surface, such as "1 of 2 components of A is not closed: 3 edges belong to an
-/// odd number of triangles".
+/// Sentences about what is unusual in a surface, such as "component 1 of A is not closed: 3 edges belong to an odd
+/// number of triangles".
 void add_sentences(const surface_summary& surface, const std::string& name, std::vector<std::string>& sentences) {
-    const auto subject = [&](std::uint32_t count, std::string_view one, std::string_view several) {
-        if (surface.components == 1) return fmt::format("{} {}", name, one);
-        return fmt::format("{} of {} components of {} {}", grouped(count), grouped(surface.components), name,
-                           count == 1 ? one : several);
+    const auto add = [&](const std::vector<std::uint32_t>& components, std::string_view one, std::string_view several,
+                         const std::string& reason = "") {
+        constexpr std::size_t most_named = 5;
+        if (components.empty()) return;
+        std::string subject = name;
+        if (components.size() > most_named)
+            subject =
+                fmt::format("{} of {} components of {}", grouped(components.size()), grouped(surface.components), name);
+        else if (surface.components > 1)
+            subject = fmt::format("component{} {} of {}", components.size() == 1 ? "" : "s",
+                                  fmt::join(components, ", "), name);
+        sentences.push_back(fmt::format("{} {}{}", subject, components.size() == 1 ? one : several, reason));
     };
-    if (const std::uint32_t open = surface.components - surface.closed; open > 0)
-        sentences.push_back(subject(open, "is not closed", "are not closed") + ": " +
-                            counted(surface.open_edges, "edge") + (surface.open_edges == 1 ? " belongs" : " belong") +
-                            " to an odd number of triangles");
-    if (surface.inward > 0) sentences.push_back(subject(surface.inward, "faces inward", "face inward"));
-    if (surface.intersects_itself.value_or(false))
-        sentences.push_back(name + " touches or crosses itself: inside is what an odd number of components enclose");
+    add(surface.open, "is not closed", "are not closed",
+        ": " + counted(surface.open_edges, "edge") + (surface.open_edges == 1 ? " belongs" : " belong") +
+            " to an odd number of triangles");
+    add(surface.unoriented, "is not oriented", "are not oriented", ": triangles at an edge face different ways");
+    add(surface.inward, "faces inward", "face inward");
+    if (surface.self_intersecting) add(*surface.self_intersecting, "intersects itself", "intersect themselves");
 }
 
 std::string sentence_about(const mesh_relation& lie) {
     switch (*lie.solids) {
-        case aabb::solid_relation::apart:
+        case aabb::solid_relation::disjoint:
             // Inside an even number of components.
-            if (!lie.a_inside_b.empty()) return "neither lies inside the other, but A has components in a cavity of B";
-            if (!lie.b_inside_a.empty()) return "neither lies inside the other, but B has components in a cavity of A";
-            return "neither lies inside the other";
+            if (!lie.a_inside_b.empty()) return "A and B are disjoint, but A has components in a cavity of B";
+            if (!lie.b_inside_a.empty()) return "A and B are disjoint, but B has components in a cavity of A";
+            return "A and B are disjoint: neither lies inside the other";
         case aabb::solid_relation::a_inside_b: return "A lies inside B";
         case aabb::solid_relation::b_inside_a: return "B lies inside A";
-        case aabb::solid_relation::partly_inside: return "components of one lie inside the other, but not all";
-        case aabb::solid_relation::not_closed: return "whether one lies inside the other has no answer: not closed";
+        case aabb::solid_relation::partly_inside:
+            return "partly inside: components of one lie inside the other, but not all";
+        case aabb::solid_relation::not_closed: return "whether one lies inside the other cannot be decided: not closed";
+        case aabb::solid_relation::undecided:
+            return "whether one lies inside the other is undecided: components that enclose it face the same way, so "
+                   "that it lies in the solid by its winding number, but in a cavity by parity";
     }
     __builtin_unreachable();
 }
 
-/// How components lie that share a point.
-std::string text_of(aabb::contact_relation contact) {
+/// How components lie of which one is inside the other, or that share a point.
+std::string_view text_of(aabb::contact_relation contact) {
     switch (contact) {
-        case aabb::contact_relation::touching: return "touching from outside";
-        case aabb::contact_relation::a_inside_b: return "that of A touches that of B from inside";
-        case aabb::contact_relation::b_inside_a: return "that of B touches that of A from inside";
+        case aabb::contact_relation::touching: return "touching";
+        case aabb::contact_relation::a_inside_b: return "that of A inside that of B, touching it";
+        case aabb::contact_relation::b_inside_a: return "that of B inside that of A, touching it";
         case aabb::contact_relation::equal: return "equal";
         case aabb::contact_relation::crossing: return "crossing";
-        case aabb::contact_relation::undecided: return "meeting, but whether they cross is not decided";
+        case aabb::contact_relation::undecided: return "undecided whether touching or crossing";
     }
     __builtin_unreachable();
 }
@@ -73,41 +99,30 @@ std::string text_of(aabb::contact_relation contact) {
 struct relation_search::state {
     const aabb::mesh& a;
     const aabb::mesh& b;
-    self_query intersects_itself;
     std::optional<std::array<aabb::box, 2>> boxes;  ///< of the floats of A and B, computed once
-    /// Of A and B, once a question needs them.
-    std::optional<aabb::enclosure<aabb::implicit_tree>> solid_a, solid_b;
-    std::vector<surface_summary> surfaces;
+    std::unique_ptr<prepared_surface> of_a, of_b;   ///< once a question needs them
     double ms = 0;
 
     void prepare() {
-        if (solid_a) return;
-        const aabb::median_build build;
-        solid_a.emplace(a, build);
-        solid_b.emplace(b, build);
-        for (std::uint32_t mesh = 0; mesh < 2; ++mesh) {
-            const auto& solid = mesh == 0 ? *solid_a : *solid_b;
-            const bool encloses = std::ranges::any_of(solid.parts(), &aabb::surface_component::is_closed);
-            surfaces.push_back(summary_of(
-                solid, intersects_itself ? std::optional(encloses && intersects_itself(mesh)) : std::nullopt));
-        }
+        if (of_a) return;
+        of_a = std::make_unique<prepared_surface>(a);
+        of_b = std::make_unique<prepared_surface>(b);
     }
 };
 
-relation_search::relation_search(const aabb::mesh& a, const aabb::mesh& b, self_query intersects_itself)
-    : state_(std::make_unique<state>(a, b, std::move(intersects_itself))) {}
+relation_search::relation_search(const aabb::mesh& a, const aabb::mesh& b) : state_(std::make_unique<state>(a, b)) {}
 relation_search::~relation_search() = default;
 
 mesh_relation relation_search::at(const aabb::pose& pose_a, const aabb::pose& pose_b) {
     const wall_stopwatch deciding;
-    mesh_relation lie{.solids = aabb::solid_relation::apart, .a_inside_b = {}, .b_inside_a = {}, .contacts = {}};
+    mesh_relation lie{.solids = aabb::solid_relation::disjoint, .a_inside_b = {}, .b_inside_a = {}, .contacts = {}};
     if (!state_->boxes) state_->boxes = {bounds_of(state_->a), bounds_of(state_->b)};
     const aabb::box box_a = world_bounds((*state_->boxes)[0], pose_a, state_->a.frame);
     const aabb::box box_b = world_bounds((*state_->boxes)[1], pose_b, state_->b.frame);
     // What lies inside lies inside the box.
     if (overlaps(box_a, box_b)) {
         state_->prepare();
-        aabb::enclosed_pairs enclosed = relation_of(*state_->solid_a, pose_a, *state_->solid_b, pose_b);
+        aabb::enclosed_pairs enclosed = relation_of(state_->of_a->whole, pose_a, state_->of_b->whole, pose_b);
         lie.solids = enclosed.relation;
         lie.a_inside_b = std::move(enclosed.a_inside_b);
         lie.b_inside_a = std::move(enclosed.b_inside_a);
@@ -120,12 +135,9 @@ mesh_relation relation_search::at(const aabb::pose& pose_a, const aabb::pose& po
                                   std::span<const aabb::index_pair> hits) {
     const wall_stopwatch deciding;
     state_->prepare();
-    const auto &a = *state_->solid_a, &b = *state_->solid_b;
+    const solid &a = state_->of_a->whole, &b = state_->of_b->whole;
     mesh_relation lie;
-    lie.contacts = contacts_of(a, pose_a, b, pose_b, hits,
-                               std::ranges::any_of(state_->surfaces, [](const surface_summary& surface) {
-                                   return surface.intersects_itself.value_or(false);
-                               }));
+    lie.contacts = contacts_of(state_->of_a->contacts, pose_a, state_->of_b->contacts, pose_b, hits);
     std::vector<aabb::index_pair> meeting, meeting_of_b;
     for (const aabb::component_contact& contact : lie.contacts) {
         meeting.push_back({contact.a, contact.b});
@@ -140,27 +152,33 @@ mesh_relation relation_search::at(const aabb::pose& pose_a, const aabb::pose& po
     return lie;
 }
 
-std::span<const surface_summary> relation_search::surfaces() const {
-    return state_->surfaces;
+std::vector<surface_summary> relation_search::surfaces() const {
+    if (!state_->of_a) return {};
+    return {summary_of(*state_->of_a), summary_of(*state_->of_b)};
 }
 double relation_search::ms() const {
     return state_->ms;
 }
 
 std::vector<std::string> sentences_about_relations(const mesh_result& result) {
-    std::map<std::string, std::uint64_t> poses;  // by sentence
-    std::map<aabb::contact_relation, std::uint64_t> contacts;
+    std::map<std::string, std::uint64_t> poses;       // by sentence
+    std::map<std::string_view, std::uint64_t> pairs;  // of components, by how they lie
     for (const std::optional<mesh_relation>& lie : result.relations) {
-        if (lie && lie->solids) ++poses[sentence_about(*lie)];
-        if (lie)
-            for (const aabb::component_contact& contact : lie->contacts) ++contacts[contact.relation];
+        if (!lie) continue;
+        if (lie->solids) {
+            ++poses[sentence_about(*lie)];
+            continue;
+        }
+        for (const aabb::component_contact& contact : lie->contacts) ++pairs[text_of(contact.relation)];
+        if (!lie->a_inside_b.empty()) pairs["that of A inside that of B"] += lie->a_inside_b.size();
+        if (!lie->b_inside_a.empty()) pairs["that of B inside that of A"] += lie->b_inside_a.size();
     }
     std::vector<std::string> sentences;
     for (const auto& [sentence, count] : poses)
         sentences.push_back(result.relations.size() == 1 ? sentence
                                                          : fmt::format("{}: {}", counted(count, "pose"), sentence));
-    for (const auto& [relation, count] : contacts)
-        sentences.push_back(counted(count, "pair") + " of components: " + text_of(relation));
+    for (const auto& [text, count] : pairs)
+        sentences.push_back(fmt::format("{} of components: {}", counted(count, "pair"), text));
     for (std::size_t mesh = 0; mesh < result.surfaces.size(); ++mesh)
         add_sentences(result.surfaces[mesh], mesh == 0 ? "A" : "B", sentences);
     return sentences;

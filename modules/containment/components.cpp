@@ -152,8 +152,7 @@ void count_open_edges(const mesh& m, std::span<const std::uint32_t> first, std::
     }
 }
 
-}  // namespace
-
+/// For each vertex that a triangle uses, the least vertex at the same position.
 std::vector<std::uint32_t> first_at_position(const mesh& m) {
     std::vector<std::uint32_t> first(m.vertices.size());
     std::vector<bool> is_used(m.vertices.size());
@@ -179,14 +178,17 @@ std::vector<std::uint32_t> first_at_position(const mesh& m) {
     return first;
 }
 
+}  // namespace
+
 surface_components components_of(const mesh& m) {
-    const std::vector<std::uint32_t> first = first_at_position(m);
+    surface_components components;
+    components.positions = first_at_position(m);
+    const std::vector<std::uint32_t>& first = components.positions;
     vertex_sets sets(m.vertices.size());
     for (const auto& corners : m.triangles) {
         sets.join(first[corners[0]], first[corners[1]]);
         sets.join(first[corners[0]], first[corners[2]]);
     }
-    surface_components components;
     constexpr std::uint32_t unseen = 0xffffffff;
     std::vector<std::uint32_t> part_of(m.vertices.size(), unseen);
     for (std::uint32_t t = 0; t < m.triangle_count(); ++t) {
@@ -202,16 +204,18 @@ surface_components components_of(const mesh& m) {
         components.of_triangles.push_back(part_of[set]);
     }
     count_open_edges(m, first, part_of, components.parts);
-    // The triangles by component, in ascending order.
-    std::vector<std::size_t> next(components.parts.size());
-    for (std::size_t c = 1; c < next.size(); ++c) next[c] = next[c - 1] + components.parts[c - 1].triangles;
-    std::vector<std::uint32_t> grouped(m.triangles.size());
-    for (std::uint32_t t = 0; t < m.triangle_count(); ++t) grouped[next[components.of_triangles[t]]++] = t;
-    std::span<const std::uint32_t> rest(grouped);
+    std::vector<std::uint32_t> next;  // by component, the place of its next triangle
+    std::uint32_t begin = 0;
     for (surface_component& part : components.parts) {
-        if (part.is_oriented) part.volume_sign = enclosed_volume_sign(m, rest.first(part.triangles));
-        rest = rest.subspan(part.triangles);
+        part.first_grouped = begin;
+        next.push_back(begin);
+        begin += part.triangles;
     }
+    components.grouped.resize(m.triangles.size());
+    for (std::uint32_t t = 0; t < m.triangle_count(); ++t) components.grouped[next[components.of_triangles[t]]++] = t;
+    for (std::uint32_t c = 0; c < components.parts.size(); ++c)
+        if (surface_component& part = components.parts[c]; part.is_oriented)
+            part.volume_sign = enclosed_volume_sign(m, components.triangles_of(c));
     return components;
 }
 

@@ -189,7 +189,8 @@ std::optional<ray_crossing> parity_ray::certain_crossing(std::uint32_t triangle)
     // A line that passes all edges on the left goes from below the triangle to above it.
     const int height = side(t[0], t[1], t[2], start);
     if (height == 0) return std::nullopt;
-    return height == (left > 0 ? -1 : 1) ? ray_crossing::crosses : ray_crossing::none;
+    if (height != (left > 0 ? -1 : 1)) return ray_crossing::none;
+    return left > 0 ? ray_crossing::leaves : ray_crossing::enters;
 }
 
 ray_crossing parity_ray::exact_crossing(std::uint32_t triangle) const noexcept {
@@ -213,7 +214,9 @@ ray_crossing parity_ray::exact_crossing(std::uint32_t triangle) const noexcept {
     const int height_before = left > 0 ? -1 : 1;  // of the start, if the ray gets to the plane
     if (left + right == 3) {
         if (height == 0) return ray_crossing::starts_on;
-        return height == height_before ? ray_crossing::crosses : ray_crossing::none;
+        if (height != height_before) return ray_crossing::none;
+        // A mirror turns normals over.
+        return (left > 0) == (determinant_sign(pose_of_surface_) > 0) ? ray_crossing::leaves : ray_crossing::enters;
     }
     if (!has_area(t)) return ray_crossing::none;
     // The line meets an edge or its extension, or lies in the plane.

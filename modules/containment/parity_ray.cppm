@@ -8,13 +8,15 @@ export namespace aabb {
 /// What a ray and a triangle have in common.
 enum class ray_crossing : std::uint8_t {
     none,       ///< nothing, or points of a triangle without area
-    crosses,    ///< one point, inside the triangle
+    leaves,     ///< one point, inside the triangle, which the ray passes in the direction of its normal
+    enters,     ///< the same, against the normal
     unclear,    ///< points of an edge, so that another ray is needed
     starts_on,  ///< the start of the ray
 };
 
 /// A ray from a vertex of one mesh at a pose through the surface of another, decided in real arithmetic. A point is
-/// inside a closed surface if a ray from it crosses an odd number of triangles, none of them at an edge.
+/// inside a closed surface if a ray from it crosses an odd number of triangles, none of them at an edge. The winding
+/// number of an oriented surface around it is the number of triangles that the ray leaves less that of those it enters.
 ///
 /// The ray passes a second point, the target, so that orientations of given points decide everything: its line crosses
 /// a triangle if it passes all edges on one side. Attempt 0 aims along an axis; each further one at another point of a

@@ -2,6 +2,7 @@ module aabb.triangle.intersection;
 
 import aabb.std;
 import aabb.triangle.orientation_test;
+import aabb.triangle.self_intersection;
 
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)  // see aabb.base:floating_point
 
@@ -413,6 +414,10 @@ triangle_intersection intersection_of(const pose_pair& poses, const triangle3d& 
 intersection_kind intersection_kind_of(const pose_pair& poses, const triangle3d& s, const triangle3d& t) {
     require_ieee_arithmetic();
     if (poses.a == poses.b) {  // a common map of full rank changes no kind
+        // A filter decides that most neighbours share no more than a corner or an edge.
+        const std::uint32_t shared = self_intersection::corner_sets(s, t).shared.size;
+        if ((shared == 1 || shared == 2) && !self_intersection::intersects(s, t))
+            return shared == 1 ? intersection_kind::point : intersection_kind::segment;
         if (!orientation_test<orientations>::intersects(s, t)) return intersection_kind::none;
         given_corners corners(s, t);
         return construction(corners).common().kind();

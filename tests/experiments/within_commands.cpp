@@ -177,7 +177,8 @@ TEST_CASE_METHOD(with_mesh_file, "What has no meaning for distances is rejected 
     CHECK(holds(refusal({"pairs", scene, "--metric", "axis"}), "--metric is the distance of --within D; give both"));
     CHECK(holds(refusal({"pairs", scene, "--within", "1", "--metric", "max"}),
                 "--metric is euclidean or axis, not 'max'"));
-    CHECK(holds(refusal({"collide", mesh, "--self", "--within", "1"}), "omit --self, --geometry and --touching"));
+    CHECK(holds(refusal({"collide", mesh, "--self", "--within", "1"}),
+                "omit --self, --geometry, --relation and --touching"));
     CHECK(holds(refusal({"collide", mesh, mesh, "--engine", "cgal", "--within", "1"}), "omit --engine"));
     CHECK(holds(refusal({"collide", mesh, mesh, "--triangle", "moller", "--within", "1"}), "omit --triangle"));
     for (const char* asks : {"--within=1", "--distance"})

@@ -9,12 +9,14 @@
 #include "support.hpp"
 
 import aabb.strategies;
+import aabb.touching;
 import aabblab.files;
 
 // What lies inside what is compared with CGAL's Side_of_triangle_mesh over its kernel of exact constructions.
 
 namespace {
 
+using aabb::contact_relation;
 using aabb::index_pair;
 using aabb::mesh;
 using aabb::pose;
@@ -111,19 +113,15 @@ mesh without_triangle(mesh m, std::ptrdiff_t t) {
     return m;
 }
 
-/// The triangles of each component.
-std::vector<std::vector<std::uint32_t>> triangles_by_component(const solid& s) {
-    std::vector<std::vector<std::uint32_t>> triangles(s.parts().size());
-    for (std::uint32_t t = 0; t < s.triangles().triangle_count(); ++t)
-        triangles[s.components().of_triangles[t]].push_back(t);
-    return triangles;
+std::vector<index_pair> hits_of(const mesh& a, const pose& pose_a, const mesh& b, const pose& pose_b) {
+    const auto stage = aabb::compose_local_detection({}, aabb::instrumentation::none);
+    return aabb::pairs_of(*stage, a, pose_a, b, pose_b);
 }
 
 /// The pairs of components that share a point, ascending.
-std::vector<index_pair> meeting_components(const solid& a, const pose& pose_a, const solid& b, const pose& pose_b) {
-    const auto stage = aabb::compose_local_detection({}, aabb::instrumentation::none);
+std::vector<index_pair> meeting_components(const solid& a, const solid& b, std::span<const index_pair> hits) {
     std::vector<index_pair> components;
-    for (const index_pair p : aabb::pairs_of(*stage, a.triangles(), pose_a, b.triangles(), pose_b))
+    for (const index_pair p : hits)
         components.push_back({a.components().of_triangles[p.a], b.components().of_triangles[p.b]});
     std::ranges::sort(components);
     components.erase(std::ranges::unique(components).begin(), components.end());
@@ -156,9 +154,8 @@ judgement judge(const solid& inner, const pose& pose_of_inner, const solid& oute
                 std::span<const index_pair> meeting) {
     judgement verdict;
     const std::vector<index_pair> ours = enclosed_components(inner, pose_of_inner, outer, pose_of_outer, meeting);
-    const auto of_inner = triangles_by_component(inner), of_outer = triangles_by_component(outer);
     for (std::uint32_t j = 0; j < outer.parts().size(); ++j) {
-        const cgal_surface surface = for_cgal(outer.triangles(), of_outer[j], pose_of_outer);
+        const cgal_surface surface = for_cgal(outer.triangles(), outer.components().triangles_of(j), pose_of_outer);
         const bool is_closed = outer.parts()[j].is_closed();
         if (surface.is_accepted() && !is_closed) ++verdict.wrong;
         for (std::uint32_t i = 0; i < inner.parts().size(); ++i) {
@@ -170,7 +167,7 @@ judgement judge(const solid& inner, const pose& pose_of_inner, const solid& oute
                 continue;
             }
             // Another vertex than the one that we ask for, where there is one.
-            const std::uint32_t vertex = inner.triangles().triangles[of_inner[i].back()][2];
+            const std::uint32_t vertex = inner.triangles().triangles[inner.components().triangles_of(i).back()][2];
             const cgal_surface::side side =
                 surface.side_of(for_cgal(inner.triangles().given_vertex(vertex)), for_cgal(pose_of_inner));
             const bool is_inside = side == cgal_surface::side::inside;
@@ -180,6 +177,69 @@ judgement judge(const solid& inner, const pose& pose_of_inner, const solid& oute
         }
     }
     return verdict;
+}
+
+/// The sides of a surface on which vertices of a component lie, by CGAL.
+struct vertex_sides {
+    bool inside = false, outside = false;
+};
+vertex_sides sides_of(const solid& s, std::uint32_t component, const pose& at, const cgal_surface& surface) {
+    constexpr std::size_t most = 40;
+    vertex_sides sides;
+    const std::span<const std::uint32_t> triangles = s.components().triangles_of(component);
+    for (std::size_t i = 0; i < triangles.size(); i += (triangles.size() + most - 1) / most) {
+        const std::uint32_t vertex = s.triangles().triangles[triangles[i]][i % 3];
+        const cgal_surface::side side = surface.side_of(for_cgal(s.triangles().given_vertex(vertex)), for_cgal(at));
+        sides.inside |= side == cgal_surface::side::inside;
+        sides.outside |= side == cgal_surface::side::outside;
+    }
+    return sides;
+}
+
+/// Pairs of components that share a point, by how they lie, and those of which CGAL says otherwise.
+struct contact_judgement {
+    std::map<contact_relation, std::size_t> counts;
+    std::size_t rejected = 0, wrong = 0;
+    std::size_t unexplained = 0;  ///< undecided, although vertices lie off the other surface and none intersects itself
+
+    /// Those of which one lies inside the other and touches it.
+    [[nodiscard]] std::size_t touching_from_inside() {
+        return counts[contact_relation::a_inside_b] + counts[contact_relation::b_inside_a];
+    }
+};
+
+/// Compares `contacts_of` with the sides on which CGAL finds the vertices of each surface.
+void judge_contacts(const solid& a, const pose& pose_a, const solid& b, const pose& pose_b,
+                    std::span<const index_pair> hits, contact_judgement& verdict) {
+    aabb::contact_surface<aabb::canonical_tree> surface_a(a), surface_b(b);
+    for (const auto& [i, j, relation] : contacts_of(surface_a, pose_a, surface_b, pose_b, hits)) {
+        ++verdict.counts[relation];
+        const cgal_surface of_a = for_cgal(a.triangles(), a.components().triangles_of(i), pose_a);
+        const cgal_surface of_b = for_cgal(b.triangles(), b.components().triangles_of(j), pose_b);
+        if (!of_a.is_accepted() || !of_b.is_accepted()) {
+            ++verdict.rejected;
+            const bool is_decided = relation != contact_relation::undecided && relation != contact_relation::crossing;
+            verdict.wrong += is_decided && !(a.parts()[i].is_closed() && b.parts()[j].is_closed());
+            continue;
+        }
+        const vertex_sides a_in_b = sides_of(a, i, pose_a, of_b), b_in_a = sides_of(b, j, pose_b, of_a);
+        // Where vertices lie on both sides, surfaces pass through each other; so do two that enter each other.
+        const bool must_cross =
+            (a_in_b.inside && a_in_b.outside) || (b_in_a.inside && b_in_a.outside) || (a_in_b.inside && b_in_a.inside);
+        switch (relation) {
+            case contact_relation::touching: verdict.wrong += must_cross || a_in_b.inside || b_in_a.inside; break;
+            case contact_relation::a_inside_b: verdict.wrong += must_cross || a_in_b.outside || b_in_a.inside; break;
+            case contact_relation::b_inside_a: verdict.wrong += must_cross || b_in_a.outside || a_in_b.inside; break;
+            case contact_relation::equal:
+                verdict.wrong += must_cross || a_in_b.inside || a_in_b.outside || b_in_a.inside || b_in_a.outside;
+                break;
+            case contact_relation::crossing: break;
+            case contact_relation::undecided:
+                verdict.unexplained += (a_in_b.inside || a_in_b.outside) && (b_in_a.inside || b_in_a.outside) &&
+                                       !surface_a.intersects_itself(i) && !surface_b.intersects_itself(j);
+                break;
+        }
+    }
 }
 
 /// Whether a file holds triangles, and not points alone.
@@ -315,44 +375,47 @@ TEST_CASE("a ray crosses a triangle in its inside, or is unclear at an edge") {
             ray.set_image({static_cast<float>(start[0]), static_cast<float>(start[1]), static_cast<float>(start[2])},
                           {0, 0, 0});
         ray.aim_at(target);
-        std::array<int, 4> counts{};
+        std::map<ray_crossing, int> counts;
         for (std::uint32_t t = 0; t < cube.triangle_count(); ++t) {
             const ray_crossing crossing = ray.crossing(t);
             if (crossing != ray_crossing::none) CHECK(ray.may_meet(bounds_of(cube.triangle(t))));
-            ++counts[static_cast<std::size_t>(crossing)];
+            ++counts[crossing];
         }
         return counts;
     };
     const vec3d centre{0.5, 0.5, 0.5};
     const pose turned = aabb::turned({1, 2, 3}, 0.7, {0.9, 0.3, -0.2});
+    const pose mirrored{{-1, 0, 0, 0, 1, 0.25, 0, 0, 1}, {3, 2, 1}};
     for (const bool with_image : {false, true})
-        for (const pose& at : {pose{}, turned}) {
-            const auto check = [&](const vec3d& start, const vec3d& target, int crossed, int unclear, int on) {
+        for (const pose& at : {pose{}, turned, mirrored}) {
+            const auto check = [&](const vec3d& start, const vec3d& target, std::array<int, 4> expected) {
                 CAPTURE(start[0], start[1], start[2], target[0], target[1], target[2], with_image);
-                const auto counts = count(start, target, with_image, at);
-                CHECK(counts[static_cast<std::size_t>(ray_crossing::crosses)] == crossed);
-                CHECK(counts[static_cast<std::size_t>(ray_crossing::unclear)] == unclear);
-                CHECK(counts[static_cast<std::size_t>(ray_crossing::starts_on)] == on);
+                auto counts = count(start, target, with_image, at);
+                CHECK(std::array{counts[ray_crossing::leaves], counts[ray_crossing::enters],
+                                 counts[ray_crossing::unclear], counts[ray_crossing::starts_on]} == expected);
             };
-            check(centre, {0.75, 0.5625, 9}, 1, 0, 0);
-            check(centre, {0.75, 0.5625, -9}, 1, 0, 0);
-            check(centre, {0.5, 0.5, 9}, 0, 2, 0);  // through the diagonal of a face
-            check(centre, {9, 9, 0.5}, 0, 2, 0);    // through an edge
-            check({-1, 0.375, 0.25}, {9, 0.375, 0.25}, 2, 0, 0);
-            check({-1, 0.375, 0.25}, {-9, 0.375, 0.25}, 0, 0, 0);  // away from the cube
-            check({-1, 0.375, 0}, {9, 0.375, 0.125}, 2, 0, 0);     // from the plane of a face into the cube
-            check({-1, 0.375, 0}, {-0.5, 0.375, 9}, 0, 0, 0);      // from the plane of a face past the cube
-            CHECK(count({-1, 0.375, 0}, {9, 0.375, 0}, with_image, at)[2] > 0);  // along a face
-            CHECK(count({-1, 0, 0}, {9, 0, 0}, with_image, at)[2] > 0);          // along an edge
-            CHECK(count({-1, -1, -1}, {9, 9, 9}, with_image, at)[2] > 0);        // through corners
-            check({0, 0.375, 0.25}, {9, 0.5, 0.5}, 1, 0, 1);
-            CHECK(count({0, 0, 0.5}, {9, 0.5, 0.25}, with_image, at)[3] > 0);
-            CHECK(count({1, 1, 1}, {9, 8, 7}, with_image, at)[3] > 0);
+            check(centre, {0.75, 0.5625, 9}, {1, 0, 0, 0});
+            check(centre, {0.75, 0.5625, -9}, {1, 0, 0, 0});
+            check(centre, {0.5, 0.5, 9}, {0, 0, 2, 0});  // through the diagonal of a face
+            check(centre, {9, 9, 0.5}, {0, 0, 2, 0});    // through an edge
+            check({-1, 0.375, 0.25}, {9, 0.375, 0.25}, {1, 1, 0, 0});
+            check({-1, 0.375, 0.25}, {-9, 0.375, 0.25}, {0, 0, 0, 0});  // away from the cube
+            check({-1, 0.375, 0}, {9, 0.375, 0.125}, {1, 1, 0, 0});     // from the plane of a face into the cube
+            check({-1, 0.375, 0}, {-0.5, 0.375, 9}, {0, 0, 0, 0});      // from the plane of a face past the cube
+            const auto counts = [&](const vec3d& start, const vec3d& target) {
+                return count(start, target, with_image, at);
+            };
+            CHECK(counts({-1, 0.375, 0}, {9, 0.375, 0})[ray_crossing::unclear] > 0);  // along a face
+            CHECK(counts({-1, 0, 0}, {9, 0, 0})[ray_crossing::unclear] > 0);          // along an edge
+            CHECK(counts({-1, -1, -1}, {9, 9, 9})[ray_crossing::unclear] > 0);        // through corners
+            check({0, 0.375, 0.25}, {9, 0.5, 0.5}, {1, 0, 0, 1});
+            CHECK(counts({0, 0, 0.5}, {9, 0.5, 0.25})[ray_crossing::starts_on] > 0);
+            CHECK(counts({1, 1, 1}, {9, 8, 7})[ray_crossing::starts_on] > 0);
         }
     // One unit in the last place beside an edge.
     const double beside = std::nextafter(0.5, 1.0);
-    CHECK(count(centre, {beside, 0.5, 9}, true, {})[1] == 1);
-    CHECK(count(centre, {beside, 0.5, 9}, true, turned)[1] == 1);
+    CHECK(count(centre, {beside, 0.5, 9}, true, {})[ray_crossing::leaves] == 1);
+    CHECK(count(centre, {beside, 0.5, 9}, true, turned)[ray_crossing::leaves] == 1);
 }
 
 TEST_CASE("a ray through a triangle without area crosses nothing") {
@@ -369,7 +432,7 @@ TEST_CASE("a ray through a triangle without area crosses nothing") {
 }
 
 TEST_CASE("a ray whose start is known by floats decides as one without them, near edges too") {
-    std::array<std::size_t, 4> counts{};
+    std::map<ray_crossing, std::size_t> counts;
     REQUIRE(rc::check([&] {
         // A start and two triangles, flat or not, near the origin or far off, with coordinates that are no floats.
         const double offset = *rc::gen::element(0.0, 0.1, 1e3, 1e7);
@@ -385,7 +448,9 @@ TEST_CASE("a ray whose start is known by floats decides as one without them, nea
         mesh other{{}, {{0, 0, 0}}};
         const vec3d start = any_point();
         set_vertices(other, {start});
-        const pose at = *rc::gen::arbitrary<bool>() ? pose{} : any_turned(any_vector(10));
+        pose at = *rc::gen::arbitrary<bool>() ? pose{} : any_turned(any_vector(10));
+        if (*rc::gen::arbitrary<bool>())
+            for (const std::size_t k : {0U, 3U, 6U}) at.rotation[k] = -at.rotation[k];  // a mirror
         // The target lies beyond a point of an edge, beside which it may be by a little.
         const double along = *rc::gen::inRange(0, 5) / 4.0, beyond = *rc::gen::element(1.0, 2.0, 1000.0);
         const double little = *rc::gen::element(0.0, 1e-17, 1e-14, 1e-9, 1e-4);
@@ -404,16 +469,17 @@ TEST_CASE("a ray whose start is known by floats decides as one without them, nea
         filtered.aim_at(target);
         for (const std::uint32_t t : {0U, 1U}) {
             const ray_crossing crossing = exact.crossing(t);
-            ++counts[static_cast<std::size_t>(crossing)];
+            ++counts[crossing];
             RC_ASSERT(filtered.crossing(t) == crossing);
             // Boxes count up to the target only, which here is farther away than any triangle.
-            if (beyond > 2 && distance > 0.01 && crossing == ray_crossing::crosses)
+            if (beyond > 2 && distance > 0.01 && (crossing == ray_crossing::leaves || crossing == ray_crossing::enters))
                 RC_ASSERT(filtered.may_meet(bounds_of(m.triangle(t))));
         }
     }));
-    CHECK(counts[static_cast<std::size_t>(ray_crossing::none)] > 20);
-    CHECK(counts[static_cast<std::size_t>(ray_crossing::crosses)] > 5);
-    CHECK(counts[static_cast<std::size_t>(ray_crossing::unclear)] > 5);
+    CHECK(counts[ray_crossing::none] > 20);
+    CHECK(counts[ray_crossing::leaves] > 2);
+    CHECK(counts[ray_crossing::enters] > 2);
+    CHECK(counts[ray_crossing::unclear] > 5);
 }
 
 TEST_CASE("a ray from the plane of a huge face is aimed out of that plane") {
@@ -434,18 +500,18 @@ TEST_CASE("a ray from the plane of a huge face is aimed out of that plane") {
     }
 }
 
-TEST_CASE("meshes lie apart, one inside the other, in a hollow, or partly inside") {
+TEST_CASE("meshes are disjoint, one inside the other, in a hollow, or partly inside") {
     const mesh cube = scaled(aabb::unit_cube(), 4, {-2, -2, -2}), ball = aabb::sphere(8);
     CHECK(relation(ball, cube) == solid_relation::a_inside_b);
     CHECK(relation(ball, flipped(cube)) == solid_relation::a_inside_b);
-    CHECK(relation(scaled(ball, 1, {9, 0, 0}), cube) == solid_relation::apart);
+    CHECK(relation(scaled(ball, 1, {9, 0, 0}), cube) == solid_relation::disjoint);
     // Inside the box of a torus, but not in it.
-    CHECK(relation(scaled(ball, 0.25F), torus(9, 7)) == solid_relation::apart);
+    CHECK(relation(scaled(ball, 0.25F), torus(9, 7)) == solid_relation::disjoint);
     CHECK(relation(scaled(ball, 0.25F, {2, 0, 0}), torus(9, 7)) == solid_relation::a_inside_b);
     // A cube with a hollow, in which the ball lies, or which lies in the ball.
     mesh hollow = cube;
     append(hollow, flipped(aabb::unit_cube()), 3, {-1.5F, -1.5F, -1.5F});
-    CHECK(relation(ball, hollow) == solid_relation::apart);
+    CHECK(relation(ball, hollow) == solid_relation::disjoint);
     CHECK(relation(scaled(ball, 0.125F, {1.75F, 0, 0}), hollow) == solid_relation::a_inside_b);
     CHECK(relation(scaled(ball, 9), hollow) == solid_relation::b_inside_a);
     const solid of_ball = solid_of(ball), of_hollow = solid_of(hollow);
@@ -463,6 +529,58 @@ TEST_CASE("meshes lie apart, one inside the other, in a hollow, or partly inside
     CHECK(relation(cube, wrong_way) == solid_relation::partly_inside);
 }
 
+TEST_CASE("what lies in components that face the same way is decided if parity and winding number agree") {
+    const mesh cube = scaled(aabb::unit_cube(), 4, {-2, -2, -2}), ball = scaled(aabb::sphere(8), 0.5F);
+    const auto with = [](mesh m, const mesh& other) {
+        append(m, other, 1, {0, 0, 0});
+        return m;
+    };
+    const mesh large = scaled(cube, 2), huge = scaled(cube, 4);
+    CHECK(relation(ball, with(cube, flipped(large))) == solid_relation::disjoint);
+    CHECK(relation(ball, with(cube, large)) == solid_relation::undecided);
+    CHECK(relation(ball, with(flipped(cube), flipped(large))) == solid_relation::undecided);
+    // Three nested ones wind around it three times, or once.
+    CHECK(relation(ball, with(with(cube, large), huge)) == solid_relation::a_inside_b);
+    CHECK(relation(ball, with(with(cube, flipped(large)), huge)) == solid_relation::a_inside_b);
+    // In one of two nested components, beside the other.
+    const mesh beside = scaled(ball, 1, {3, 0, 0});
+    CHECK(relation(beside, with(cube, large)) == solid_relation::a_inside_b);
+    // Where two overlap.
+    const mesh overlapping = with(cube, scaled(cube, 1, {1, 1, 1}));
+    CHECK(relation(ball, overlapping) == solid_relation::undecided);
+    CHECK(relation(scaled(ball, 0.5F, {-1.5F, 0, 0}), overlapping) == solid_relation::a_inside_b);
+    // A mirror turns both components over.
+    const pose mirrored{{-1, 0, 0, 0, 1, 0.25, 0, 0, 1}, {0, 0, 0}};
+    CHECK(relation(ball, with(cube, large), {}, mirrored) == solid_relation::undecided);
+    CHECK(relation(ball, with(cube, flipped(large)), {}, mirrored) == solid_relation::disjoint);
+    // Where a component is not oriented, parity decides alone.
+    mesh turned = cube;
+    std::swap(turned.triangles[4][0], turned.triangles[4][1]);
+    CHECK(relation(ball, with(turned, large)) == solid_relation::disjoint);
+    // Of two components, one lies where both are around it.
+    CHECK(relation(with(ball, beside), with(cube, large)) == solid_relation::undecided);
+    // A surface around which one component winds twice: a prism over a star that is drawn in one stroke.
+    mesh star;
+    for (const float z : {-1.0F, 1.0F})
+        for (int i = 0; i < 5; ++i) {
+            const double turn = 4 * std::numbers::pi * i / 5;
+            star.vertices.push_back(
+                {static_cast<float>(4 * std::cos(turn)), static_cast<float>(4 * std::sin(turn)), z});
+        }
+    star.vertices.push_back({0, 0, -1});
+    star.vertices.push_back({0, 0, 1});
+    for (std::uint32_t i = 0; i < 5; ++i) {
+        const std::uint32_t next = (i + 1) % 5;
+        star.triangles.insert(star.triangles.end(),
+                              {{10, next, i}, {11, i + 5, next + 5}, {i, next, next + 5}, {i, next + 5, i + 5}});
+    }
+    const solid of_star = solid_of(star), of_ball = solid_of(ball);
+    REQUIRE(of_star.parts().size() == 1);
+    REQUIRE(of_star.parts()[0].volume_sign == 1);
+    CHECK(relation(scaled(ball, 0.5F, {0.25F, 0.125F, 0}), star) == solid_relation::undecided);
+    CHECK(relation(scaled(ball, 0.25F, {2.5F, 0, 0}), star) == solid_relation::a_inside_b);
+}
+
 TEST_CASE("meshes that are not closed can lie inside, and leave open what lies in them") {
     const mesh cube = scaled(aabb::unit_cube(), 4, {-2, -2, -2}), ball = aabb::sphere(8);
     CHECK(relation(without_triangle(ball, 5), cube) == solid_relation::a_inside_b);
@@ -471,7 +589,7 @@ TEST_CASE("meshes that are not closed can lie inside, and leave open what lies i
     CHECK(relation(scaled(without_triangle(ball, 5), 1, {0, 0, 0.5F}), scaled(torus(9, 7), 2)) ==
           solid_relation::not_closed);
     // Whatever closed it, it could not contain what lies beyond its box.
-    CHECK(relation(scaled(without_triangle(ball, 5), 1, {9, 0, 0}), cube) == solid_relation::apart);
+    CHECK(relation(scaled(without_triangle(ball, 5), 1, {9, 0, 0}), cube) == solid_relation::disjoint);
     // An open component that is far away is of no importance.
     mesh and_far = cube;
     append(and_far, without_triangle(ball, 5), 1, {9, 0, 0});
@@ -490,12 +608,12 @@ TEST_CASE("rays that meet edges and vertices are replaced") {
                 CHECK(relation(scaled(aabb::unit_cube(), 0.125F, {x, y, z}), cut) == solid_relation::a_inside_b);
     // Beside the torus, in the planes of its edges.
     for (float x = -1.25F; x <= 1.25F; x += 0.25F)
-        CHECK(relation(scaled(aabb::unit_cube(), 0.0625F, {x, 0, 0}), torus(8, 8)) == solid_relation::apart);
+        CHECK(relation(scaled(aabb::unit_cube(), 0.0625F, {x, 0, 0}), torus(8, 8)) == solid_relation::disjoint);
     // In the planes of faces of two cubes that share a corner, outside both.
     mesh corners = cut_cube(2);
     append(corners, cut_cube(2), 1, {2, 2, 2});
     for (const vec3f& at : {vec3f{1, 1, 3}, vec3f{3, 1, 1}, vec3f{1, 3, 3}, vec3f{2.5F, 1.5F, 1.5F}})
-        CHECK(relation(scaled(aabb::unit_cube(), 0.125F, at), corners) == solid_relation::apart);
+        CHECK(relation(scaled(aabb::unit_cube(), 0.125F, at), corners) == solid_relation::disjoint);
 }
 
 TEST_CASE("a vertex on the other surface is rejected") {
@@ -562,15 +680,32 @@ TEST_CASE("all trees agree on what a mesh encloses") {
     [&]<class... Trees>(aabb::type_list<Trees...>) { (check(aabb::type_list<Trees>{}), ...); }(aabb::trees{});
 }
 
-// With RC_PARAMS=max_success=10000 in the environment, 10,000 pairs of meshes.
+/// A component that has a vertex in common with a shape: the shape shrunk, but for this vertex, so that a convex one
+/// touches it from inside in a point; shrunk towards the vertex, or mirrored at it; or the shape itself.
+mesh touching_copy(const mesh& shape, int way) {
+    const vec3f fixed = shape.vertices[*rc::gen::inRange<std::size_t>(0, shape.vertices.size())];
+    vec3f centre{};
+    for (const vec3f& v : shape.vertices)
+        for (int k = 0; k < 3; ++k) centre[k] += v[k] / static_cast<float>(shape.vertices.size());
+    mesh copy = shape;
+    for (vec3f& v : copy.vertices)
+        for (int k = 0; k < 3; ++k) {
+            if (way == 0 && v != fixed) v[k] = centre[k] + 0.5F * (v[k] - centre[k]);
+            if (way == 1) v[k] = fixed[k] + 0.5F * (v[k] - fixed[k]);
+            if (way == 2) v[k] = fixed[k] - 0.5F * (v[k] - fixed[k]);
+        }
+    return copy;
+}
+
+// With RC_PARAMS=max_success=10000 in the environment, 10,000 pairs of meshes; -s prints the numbers.
 TEST_CASE("what lies inside is what CGAL finds, for made meshes at any poses") {
     const std::array<mesh, 7> shapes{aabb::unit_cube(), aabb::sphere(6),  flipped(torus(9, 6)), tetrahedron(1),
                                      cut_cube(3),       aabb::sphere(12), unwelded(torus(6, 5))};
-    std::size_t inside = 0, outside = 0, rejected = 0, several = 0;
+    std::size_t pairs = 0, inside = 0, outside = 0, rejected = 0, several = 0, open = 0;
+    contact_judgement contacts;
     REQUIRE(rc::check([&] {
         // Components of sizes from 1/8 to 8 around each other, on a lattice or not; some are not closed.
-        const auto make = [&](int most_exponent) {
-            mesh m;
+        const auto make = [&](int most_exponent, std::vector<mesh>& parts) {
             const int components = *rc::gen::inRange(1, 5);
             for (int i = 0; i < components; ++i) {
                 const mesh& shape = shapes[*rc::gen::inRange<std::size_t>(0, shapes.size())];
@@ -581,11 +716,19 @@ TEST_CASE("what lies inside is what CGAL finds, for made meshes at any poses") {
                                       : static_cast<float>(uniform(-2, 2));
                 };
                 const bool is_open = *rc::gen::inRange(0, 8) == 0;
-                append(m, is_open ? without_triangle(shape, 2) : shape, size, {shift(), shift(), shift()});
+                parts.push_back(
+                    scaled(is_open ? without_triangle(shape, 2) : shape, size, {shift(), shift(), shift()}));
             }
-            return m;
         };
-        const mesh a = make(-1), b = make(2);
+        std::vector<mesh> parts_a, parts_b;
+        make(-1, parts_a);
+        make(2, parts_b);
+        if (*rc::gen::arbitrary<bool>())
+            parts_a.push_back(
+                touching_copy(parts_b[*rc::gen::inRange<std::size_t>(0, parts_b.size())], *rc::gen::inRange(0, 4)));
+        mesh a, b;
+        for (const mesh& part : parts_a) append(a, part, 1, {0, 0, 0});
+        for (const mesh& part : parts_b) append(b, part, 1, {0, 0, 0});
         pose pose_a, pose_b;
         switch (*rc::gen::inRange(0, 4)) {
             case 0: break;
@@ -594,25 +737,78 @@ TEST_CASE("what lies inside is what CGAL finds, for made meshes at any poses") {
             default: pose_a = any_turned(any_vector(1)); pose_b = any_turned({0, 0, 0});
         }
         const solid of_a = solid_of(a), of_b = solid_of(b);
-        const std::vector<index_pair> meeting = meeting_components(of_a, pose_a, of_b, pose_b);
+        const std::vector<index_pair> hits = hits_of(a, pose_a, b, pose_b);
+        const std::vector<index_pair> meeting = meeting_components(of_a, of_b, hits);
         std::vector<index_pair> meeting_b;
         for (const auto [i, j] : meeting) meeting_b.push_back({j, i});
         std::ranges::sort(meeting_b);
         const judgement a_in_b = judge(of_a, pose_a, of_b, pose_b, meeting);
         const judgement b_in_a = judge(of_b, pose_b, of_a, pose_a, meeting_b);
         RC_ASSERT(a_in_b.wrong + b_in_a.wrong == 0U);
+        judge_contacts(of_a, pose_a, of_b, pose_b, hits, contacts);
+        RC_ASSERT(contacts.wrong == 0U);
+        RC_ASSERT(contacts.unexplained == 0U);
+        ++pairs;
         inside += a_in_b.inside + b_in_a.inside;
         outside += a_in_b.outside + b_in_a.outside;
         rejected += a_in_b.rejected + b_in_a.rejected;
         several += of_a.parts().size() > 1 && of_b.parts().size() > 1;
+        open += !of_a.is_closed() || !of_b.is_closed();
     }));
-    CAPTURE(inside, outside, rejected, several);
+    CAPTURE(pairs, inside, outside, rejected, several, open);
+    CAPTURE(contacts.counts[contact_relation::touching], contacts.counts[contact_relation::a_inside_b],
+            contacts.counts[contact_relation::b_inside_a], contacts.counts[contact_relation::equal],
+            contacts.counts[contact_relation::crossing], contacts.counts[contact_relation::undecided],
+            contacts.rejected);
     CHECK(inside > 5);
     CHECK(outside > 20);
     CHECK(several > 5);
+    CHECK(open > 5);
+    CHECK(contacts.touching_from_inside() > 1);
+    CHECK(contacts.counts[contact_relation::touching] > 1);
 }
 
-// With RC_PARAMS=max_success=200 in the environment, 200 pairs of meshes.
+/// A copy of a mesh that shares a vertex with another one, and lies below or above it there.
+std::optional<mesh> copy_at_vertex(const mesh& m, const mesh& other, double factor) {
+    const auto corners = other.triangles[*rc::gen::inRange<std::size_t>(0, other.triangles.size())];
+    const vec3d at = other.given_vertex(corners[0]);
+    vec3d up{};
+    for (std::uint32_t t = 0; t < other.triangle_count(); ++t) {
+        const aabb::triangle3d s = other.given_triangle(t);
+        if (s[0] != at && s[1] != at && s[2] != at) continue;
+        const vec3d normal = cross(s[1] - s[0], s[2] - s[0]);
+        for (int k = 0; k < 3; ++k) up[k] += normal[k];
+    }
+    const auto scaled_to_1 = [](vec3d v) {
+        const double length = std::sqrt(dot(v, v));
+        for (int k = 0; k < 3; ++k) v[k] /= length;
+        return v;
+    };
+    // The vertex of the copy farthest along a direction, which is turned to the normal by half a turn about their sum.
+    vec3d direction = scaled_to_1(any_vector(1)), middle{};
+    up = scaled_to_1(up);
+    const double sign = *rc::gen::inRange(0, 4) == 0 ? -1 : 1;
+    for (int k = 0; k < 3; ++k) middle[k] = direction[k] + sign * up[k];
+    if (!(dot(middle, middle) > 1e-3)) return std::nullopt;
+    middle = scaled_to_1(middle);
+    vec3d top = m.given_vertex(m.triangles[0][0]);
+    for (const auto& triangle : m.triangles)
+        for (const std::uint32_t v : triangle)
+            if (dot(direction, m.given_vertex(v) - top) > 0) top = m.given_vertex(v);
+    mesh copy = m;
+    std::vector<vec3d> vertices;
+    for (std::size_t v = 0; v < m.vertices.size(); ++v) {
+        const vec3d from_top = m.given_vertex(v) - top;
+        const double along = 2 * dot(middle, from_top);
+        vec3d moved{};
+        for (int k = 0; k < 3; ++k) moved[k] = at[k] + factor * (along * middle[k] - from_top[k]);
+        vertices.push_back(moved);
+    }
+    set_vertices(copy, vertices);
+    return copy;
+}
+
+// With RC_PARAMS=max_success=200 in the environment, 200 pairs of meshes; -s prints the numbers.
 TEST_CASE("what lies inside is what CGAL finds, for real meshes at any poses") {
     const char* const folder = std::getenv("AABBLAB_DATA");
     if (folder == nullptr) SKIP("AABBLAB_DATA is not set, where real meshes are");
@@ -627,38 +823,60 @@ TEST_CASE("what lies inside is what CGAL finds, for real meshes at any poses") {
         if (meshes.back().triangle_count() > 6'000) meshes.pop_back();
     }
     REQUIRE(meshes.size() > 50);
-    std::size_t pairs = 0, inside = 0, outside = 0, rejected = 0;
+    std::size_t pairs = 0, without_hits = 0, inside = 0, outside = 0, rejected = 0, several = 0, open = 0;
+    contact_judgement contacts;
     REQUIRE(rc::check([&] {
-        const mesh& a = meshes[*rc::gen::inRange<std::size_t>(0, meshes.size())];
+        mesh a = meshes[*rc::gen::inRange<std::size_t>(0, meshes.size())];
         const mesh& b = meshes[*rc::gen::inRange<std::size_t>(0, meshes.size())];
-        // A is turned, scaled to a part of B and placed near a vertex of B or in its box.
-        const solid of_a = solid_of(a), of_b = solid_of(b);
-        const auto extent = [](const solid& s) {
-            const aabb::box& bounds = s.surface().bounds();
+        const auto extent = [](const mesh& m) {
+            const aabb::box bounds = bounds_of(m);
             const int k = longest_axis(bounds);
-            return s.triangles().frame.scale * (double{bounds.max[k]} - double{bounds.min[k]});
+            return m.frame.scale * (double{bounds.max[k]} - double{bounds.min[k]});
         };
-        const double factor = extent(of_b) / extent(of_a) * std::pow(10, uniform(-2.5, 0.3));
-        pose pose_a = any_turned({0, 0, 0});
-        for (double& r : pose_a.rotation) r *= factor;
-        const vec3d low = b.frame.vertex(aabb::in_double(of_b.surface().bounds().min));
-        const vec3d high = b.frame.vertex(aabb::in_double(of_b.surface().bounds().max));
-        const vec3d at = a.given_vertex(a.triangles[0][0]);
-        for (int i = 0; i < 3; ++i) {
-            double turned = 0;
-            for (int j = 0; j < 3; ++j) turned += pose_a.rotation[static_cast<std::size_t>(3 * i + j)] * at[j];
-            pose_a.translation[i] = low[i] + uniform(0.1, 0.9) * (high[i] - low[i]) - turned;
+        const double factor = extent(b) / extent(a) * std::pow(10, uniform(-2.5, 0.3));
+        pose pose_a, pose_b;
+        if (*rc::gen::arbitrary<bool>()) {
+            // A is scaled to a part of B and shares a vertex with it.
+            std::optional<mesh> copy = copy_at_vertex(a, b, factor / 10);
+            RC_PRE(copy.has_value());
+            a = std::move(*copy);
+            if (*rc::gen::arbitrary<bool>()) pose_a = pose_b = any_turned(any_vector(1));
+        } else {
+            // A is turned, scaled and placed in the box of B.
+            pose_a = any_turned({0, 0, 0});
+            for (double& r : pose_a.rotation) r *= factor;
+            const aabb::box bounds = bounds_of(b);
+            const vec3d low = b.frame.vertex(aabb::in_double(bounds.min));
+            const vec3d high = b.frame.vertex(aabb::in_double(bounds.max));
+            const vec3d at = a.given_vertex(a.triangles[0][0]);
+            for (int i = 0; i < 3; ++i) {
+                double turned = 0;
+                for (int j = 0; j < 3; ++j) turned += pose_a.rotation[static_cast<std::size_t>(3 * i + j)] * at[j];
+                pose_a.translation[i] = low[i] + uniform(0.1, 0.9) * (high[i] - low[i]) - turned;
+            }
         }
-        const std::vector<index_pair> meeting = meeting_components(of_a, pose_a, of_b, {});
-        const judgement verdict = judge(of_a, pose_a, of_b, {}, meeting);
+        const solid of_a = solid_of(a), of_b = solid_of(b);
+        const std::vector<index_pair> hits = hits_of(a, pose_a, b, pose_b);
+        const std::vector<index_pair> meeting = meeting_components(of_a, of_b, hits);
+        const judgement verdict = judge(of_a, pose_a, of_b, pose_b, meeting);
         RC_ASSERT(verdict.wrong == 0U);
-        pairs += meeting.empty();
+        judge_contacts(of_a, pose_a, of_b, pose_b, hits, contacts);
+        RC_ASSERT(contacts.wrong == 0U);
+        ++pairs;
+        without_hits += meeting.empty();
         inside += verdict.inside;
         outside += verdict.outside;
         rejected += verdict.rejected;
+        several += of_a.parts().size() > 1 || of_b.parts().size() > 1;
+        open += !of_a.is_closed() || !of_b.is_closed();
     }));
-    CAPTURE(pairs, inside, outside, rejected);
-    CHECK(pairs > 20);
+    CAPTURE(pairs, without_hits, inside, outside, rejected, several, open);
+    CAPTURE(contacts.counts[contact_relation::touching], contacts.counts[contact_relation::a_inside_b],
+            contacts.counts[contact_relation::b_inside_a], contacts.counts[contact_relation::equal],
+            contacts.counts[contact_relation::crossing], contacts.counts[contact_relation::undecided],
+            contacts.rejected, contacts.unexplained);
+    CHECK(without_hits > 20);
     CHECK(inside > 5);
     CHECK(outside > 20);
+    CHECK(contacts.touching_from_inside() > 0);
 }

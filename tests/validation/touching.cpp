@@ -105,7 +105,8 @@ std::vector<aabb::component_contact> contacts(const mesh& a, const pose& pose_a,
     const auto stage = aabb::compose_local_detection({}, aabb::instrumentation::none);
     const std::vector<index_pair> hits = aabb::pairs_of(*stage, a, pose_a, b, pose_b);
     const solid of_a(a, aabb::median_build{}), of_b(b, aabb::median_build{});
-    return contacts_of(of_a, pose_a, of_b, pose_b, hits, /*intersect_themselves=*/false);
+    aabb::contact_surface<aabb::canonical_tree> surface_a(of_a), surface_b(of_b);
+    return contacts_of(surface_a, pose_a, surface_b, pose_b, hits);
 }
 
 mesh scaled(const mesh& other, float scale, const vec3f& shift) {
@@ -231,12 +232,43 @@ TEST_CASE("meshes that are no manifolds, or intersect themselves, cross or are u
     for (const mesh other = scaled(aabb::unit_cube(), 1, {5, 1, 0}); const auto& [p, q, r] : other.triangles)
         add_triangle(chess, other.vertices[p], other.vertices[q], other.vertices[r]);
     CHECK(contacts(chess, {}, cube, {}) == std::vector<aabb::component_contact>{{0, 0, contact_relation::undecided}});
-    const mesh beside_cube = scaled(aabb::unit_cube(), 1, {4, 0, 0});
-    const solid a(beside_cube, aabb::median_build{}), b(cube, aabb::median_build{});
-    const auto stage = aabb::compose_local_detection({}, aabb::instrumentation::none);
-    const std::vector<index_pair> hits = aabb::pairs_of(*stage, beside_cube, {}, cube, {});
-    CHECK(contacts_of(a, {}, b, {}, hits, /*intersect_themselves=*/true) ==
-          std::vector<aabb::component_contact>{{0, 0, contact_relation::undecided}});
-    CHECK(contacts_of(a, {}, b, {}, hits, /*intersect_themselves=*/false) ==
+    // A component that intersects itself, since one of its vertices is drawn out through the opposite faces, says
+    // nothing about another.
+    mesh two = scaled(aabb::unit_cube(), 1, {-1, 2, 2});
+    two.vertices[0] = {-0.5F, 5, 5};
+    for (const mesh other = scaled(aabb::unit_cube(), 1, {4, 0, 0}); const auto& [p, q, r] : other.triangles)
+        add_triangle(two, other.vertices[p], other.vertices[q], other.vertices[r]);
+    CHECK(contacts(two, {}, cube, {}) == std::vector<aabb::component_contact>{{0, 0, contact_relation::undecided},
+                                                                              {1, 0, contact_relation::touching}});
+    CHECK(contacts(cube, {}, two, {}) == std::vector<aabb::component_contact>{{0, 0, contact_relation::undecided},
+                                                                              {0, 1, contact_relation::touching}});
+}
+
+TEST_CASE("triangles with two corners at one position do not matter for how solids lie") {
+    const mesh ball = scaled(aabb::sphere(6), 2, {0, 0, 0});  // with such triangles at its poles
+    const auto cube_from = [](float low, float high) { return scaled(aabb::unit_cube(), high - low, {low, low, low}); };
+    CHECK(contacts(ball, {}, cube_from(-2, 2), {}) ==
+          std::vector<aabb::component_contact>{{0, 0, contact_relation::a_inside_b}});
+    CHECK(contacts(ball, {}, scaled(aabb::unit_cube(), 2, {-1, -1, 2}), {}) ==
           std::vector<aabb::component_contact>{{0, 0, contact_relation::touching}});
+    CHECK(contacts(ball, {}, ball, {}) == std::vector<aabb::component_contact>{{0, 0, contact_relation::equal}});
+}
+
+TEST_CASE("solids that meet in many points are decided by a vertex off the other") {
+    // A ball of which every fourth vertex near the bottom is drawn out to a plane.
+    constexpr std::uint32_t rings = 40, around_ball = 2 * rings;
+    mesh urchin = aabb::sphere(rings);
+    const mesh below = scaled(aabb::unit_cube(), 8, {-4, -4, -10}), around = scaled(aabb::unit_cube(), 8, {-4, -4, -2});
+    std::size_t touching = 0;
+    for (std::uint32_t ring = 28; ring < rings; ring += 2)
+        for (std::uint32_t i = 0; i < around_ball; i += 2) {
+            urchin.vertices[ring * around_ball + i][2] = -2;
+            ++touching;
+        }
+    REQUIRE(touching > 100);
+    CHECK(contacts(urchin, {}, below, {}) == std::vector<aabb::component_contact>{{0, 0, contact_relation::touching}});
+    CHECK(contacts(urchin, {}, around, {}) ==
+          std::vector<aabb::component_contact>{{0, 0, contact_relation::a_inside_b}});
+    CHECK(contacts(around, {}, urchin, {}) ==
+          std::vector<aabb::component_contact>{{0, 0, contact_relation::b_inside_a}});
 }
