@@ -43,6 +43,7 @@ int main(int argc, char** argv) {
     aabblab::add_triangle_test_benchmarks();
     aabblab::add_posed_triangle_benchmarks();
     aabblab::add_distance_benchmarks();
+    aabblab::add_side_benchmarks();
     try {
         // Google Benchmark itself reports that no benchmark matches a filter.
         return benchmark::RunSpecifiedBenchmarks() == 0 ? bad_input : EXIT_SUCCESS;

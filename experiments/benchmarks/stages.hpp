@@ -42,6 +42,10 @@ void add_posed_triangle_benchmarks();
 /// "within/embree/bunnies"
 void add_distance_benchmarks();
 
+/// Whether a point in the box of a closed surface lies inside, by `enclosure` and by CGAL's Side_of_triangle_mesh,
+/// which must agree. The counter `inside` is the fraction of points that do. "side/cgal/query/torus_knot:…"
+void add_side_benchmarks();
+
 /// Every build of `implicit` by one thread, with the counters `two_threads`, the speedup by two threads, and
 /// `two_builds`, the throughput of two builds at once: medians of five turns. "build/sah/torus_knot:…"
 /// @param pinned pins this thread to one processor, except during builds

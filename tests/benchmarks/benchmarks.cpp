@@ -191,6 +191,16 @@ TEST_CASE("Every build has a benchmark that reports the speedup by two threads a
     CHECK(sorted(measured) == sorted(strategy_names(aabb::strategy_kind::build)));
 }
 
+TEST_CASE("Whether points lie inside a surface is timed beside CGAL, with the same result") {
+    std::map<std::string, double> inside;
+    for (const auto& run : reported("^side/.*/query/noise_sphere")) inside[run["name"]] = run.value("inside", 0.0);
+    CHECK(inside.size() == 2);
+    const double share = inside["side/cgal/query/noise_sphere:triangles=20000"];
+    CHECK(inside["side/enclosure/query/noise_sphere:triangles=20000"] == share);
+    CHECK_BETWEEN(0.2, share, 0.8);
+    CHECK(reported("^side/.*/build/noise_sphere").size() == 2);
+}
+
 TEST_CASE("Invalid arguments of benchmarks are rejected with status 2") {
     for (const char* argument : {"--benchmark_filter=sotr/", "--benchmrk", "--benchmark_format=xml"}) {
         const program_result result = run_program({argument});
