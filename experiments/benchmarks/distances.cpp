@@ -15,19 +15,19 @@ namespace aabblab {
 
 namespace {
 
-/// Two meshes that lie apart, or cut a little into each other, at some poses of the second.
-class apart_meshes {
+/// Two meshes that are disjoint, or intersect a little, at some poses of the second.
+class disjoint_meshes {
 public:
-    apart_meshes(const std::string& name_a, const std::string& name_b)
+    disjoint_meshes(const std::string& name_a, const std::string& name_b)
         : a(make_mesh(name_a).mesh), b(make_mesh(name_b).mesh) {
         const ball of_a(a), of_b(b);
-        reach = of_a.radius + of_b.radius;
+        size = of_a.radius + of_b.radius;
         constexpr int poses = 8;
         for (int i = 0; i < poses; ++i) {
             aabb::pose p = turned(0.7 * i);
             // Along a spiral around A, ever farther from it.
             const double angle = 2.4 * i, height = (i + 0.5) * 2 / poses - 1, width = std::sqrt(1 - height * height);
-            const double far = reach * (0.45 + 0.06 * i);
+            const double far = size * (0.45 + 0.06 * i);
             const aabb::vec3d centre = moved(p, of_b.centre);
             const aabb::vec3d way{far * width * std::cos(angle), far * width * std::sin(angle), far * height};
             for (int k = 0; k < 3; ++k) p.translation[k] = of_a.centre[k] + way[k] - centre[k];
@@ -36,7 +36,7 @@ public:
     }
 
     aabb::mesh a, b;
-    double reach = 0;  ///< at most this far apart, their boxes may meet
+    double size = 0;  ///< the sum of the radii of balls around both
 
     [[nodiscard]] const std::vector<aabb::pose>& poses_of_b() const { return of_b_; }
 
@@ -111,7 +111,7 @@ auto timed(const Call& call) {
 /// Times both distances at each pose in turn, and counts how many of the peer's are beyond our bounds by more than
 /// their rounding.
 void time_distances(benchmark::State& state, const distance_peer& peer, const mesh_names& names) {
-    const apart_meshes meshes(names.a, names.b);
+    const disjoint_meshes meshes(names.a, names.b);
     aabb::distance_detection<aabb::sah_build, aabb::implicit_tree> ours;
     const auto of_a = ours.add_model(meshes.a), of_b = ours.add_model(meshes.b);
     const distance_peer::measurement theirs = peer.distance(meshes.a, meshes.b);
@@ -125,8 +125,8 @@ void time_distances(benchmark::State& state, const distance_peer& peer, const me
             const auto [found, their_ms] = timed([&] { return theirs(at); });
             taken.add(our_ms, their_ms);
             const double off = std::max(0.0, std::abs(found - exact.distance) - exact.error);
-            wrong += off > 1e-12 * meshes.reach;
-            worst = std::max(worst, off / meshes.reach);
+            wrong += off > 1e-12 * meshes.size;
+            worst = std::max(worst, off / meshes.size);
         }
         state.SetIterationTime((taken.theirs_ms - before) / 1000 / static_cast<double>(meshes.poses_of_b().size()));
     }
@@ -138,7 +138,7 @@ void time_distances(benchmark::State& state, const distance_peer& peer, const me
 /// Times counts of the pairs within a fiftieth of the meshes' size beyond their distance.
 /// @throws std::logic_error if they differ
 void time_within(benchmark::State& state, const distance_peer& peer, const mesh_names& names) {
-    const apart_meshes meshes(names.a, names.b);
+    const disjoint_meshes meshes(names.a, names.b);
     aabb::distance_detection<aabb::sah_build, aabb::implicit_tree> distances;
     distances.add_model(meshes.a);
     distances.add_model(meshes.b);
@@ -149,7 +149,7 @@ void time_within(benchmark::State& state, const distance_peer& peer, const mesh_
         const double before = taken.theirs_ms;
         pairs = 0;
         for (const aabb::pose& at : meshes.poses_of_b()) {
-            const double d = distances.distance(0, {}, 1, at).distance + meshes.reach / 50;
+            const double d = distances.distance(0, {}, 1, at).distance + meshes.size / 50;
             aabb::within_detection<aabb::sah_build, aabb::implicit_tree> ours(d);
             ours.add_model(meshes.a);
             ours.add_model(meshes.b);

@@ -22,7 +22,7 @@ struct contact_frames {
     double point_error;
 };
 
-/// Frames apart, then frames in contact; either may be missing.
+/// Frames without contact, then frames in contact; either may be missing.
 struct interval {
     std::optional<nearest_frame> before;
     std::optional<contact_frames> contact;

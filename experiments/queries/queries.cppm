@@ -115,7 +115,7 @@ struct frames_result {
     }
 };
 /// Records in which frames objects are in contact, where, and how near they come before: for each pair of objects a row
-/// per interval of frames in contact, with the frames apart before it, and one for frames apart after the last.
+/// per interval of frames in contact, with the frames without contact before it, and one for those after the last.
 class contact_intervals {
 public:
     static constexpr std::string_view columns =
@@ -128,7 +128,7 @@ public:
     ~contact_intervals();
 
     /// Adds the scene's current frame.
-    /// @param contacts sorted; the others' objects are apart
+    /// @param contacts sorted; other objects are not in contact
     void add(std::uint32_t frame, std::span<const aabb::contact> contacts);
     /// Writes and commits the rows, once.
     void write();

@@ -46,7 +46,7 @@ public:
             by_nodes_.find(a, pose_a, b, pose_b, [&] { return square_not_below(limit()); }, visit);
     }
 
-    /// Says that triangles are probably apart along a direction in the world from A to B, until the end of the query.
+    /// Sets a direction in the world from A to B that probably separates triangles, until the end of the query.
     void prefer(const vec3d& direction) noexcept { by_wide_nodes_.prefer(direction); }
 
     [[nodiscard]] Counters counters() const noexcept {

@@ -6,8 +6,8 @@ import aabb.std;
 
 export namespace aabb {
 
-/// Two points at a distance of d are at most `most_stretch` d / scale apart in A's frame, whose floats have that scale:
-/// a rigid motion keeps lengths within 2^-18.
+/// Two points at a distance of d have at most the distance `most_stretch` d / scale in A's frame, whose floats have
+/// that scale: a rigid motion keeps lengths within 2^-18.
 inline constexpr double most_stretch = 1 + 0x1p-17;
 
 /// The motion from B's frame to A's, if there is one that keeps lengths.

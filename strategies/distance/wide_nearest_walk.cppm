@@ -28,8 +28,7 @@ public:
         return true;
     }
 
-    /// Sets the direction in the world from A to B, along which triangles are probably apart, until the end of the
-    /// query.
+    /// Sets a direction in the world from A to B that probably separates triangles, until the end of the query.
     void prefer(const vec3d& direction) noexcept {
         vec3d in_a{};
         for (std::size_t i = 0; i < 3; ++i)

@@ -57,13 +57,14 @@ public:
     }
 
     [[nodiscard]] std::size_t bytes() const noexcept {
-        return steps_.bytes() + images_.bytes() + bytes_of(pending_, leaves_);
+        return steps_.bytes() + images_.bytes() + bytes_of(pending_, leaves_of_a_, leaves_of_b_);
     }
 
 private:
     static constexpr std::size_t width = wide_node::most_children;
     static constexpr std::uint32_t children = wide_node::most_children;
     static constexpr std::uint32_t no_leaf = 0xffffffff;
+    static constexpr std::uint32_t slots = 32;       // for leaves of each tree
     using rows = std::array<simd::eight_floats, 6>;  // lower bounds on each axis, then upper bounds
 
     struct node_pair {
@@ -71,7 +72,7 @@ private:
         std::uint32_t step;
         std::uint32_t a, b;
     };
-    /// Eight boxes, and how far they reach along the preferred direction: those of A at most, those of B at least.
+    /// Eight boxes with their heights along the preferred direction: the greatest of A's, the least of B's.
     struct extents {
         rows boxes;
         simd::eight_floats height;
@@ -82,7 +83,7 @@ private:
         float gap;
         std::uint32_t pair;
     };
-    /// The last leaf of either tree that was read.
+    /// A leaf that was read, in the slot of its number modulo the number of slots.
     struct leaf {
         std::uint32_t number = no_leaf;
         triangle_block block;
@@ -95,8 +96,10 @@ private:
         b.require_fit();
         steps_.begin({a.tree().levels(), b.tree().levels()});
         images_.begin(b.tree().level(0), nodes_of(b.tree()), to_a.to_boxes());
-        leaves_.resize(2);
-        for (leaf& l : leaves_) l.number = no_leaf;
+        for (std::vector<leaf>* const leaves : {&leaves_of_a_, &leaves_of_b_}) {
+            leaves->resize(slots);
+            for (leaf& l : *leaves) l.number = no_leaf;
+        }
         float greatest = 0;
         const box image = to_a(b.bounds());
         for (int k = 0; k < 3; ++k)
@@ -105,7 +108,11 @@ private:
         const vec3f& error = to_a.image_error();
         slack_ = 0x1p-19F * greatest + 0x1p-140F;
         leaf_slack_ = slack_ + (error[0] + error[1] + error[2]) * (1 + 0x1p-20F);
-        direction_ = {};
+        vec3d between{};  // of the centres
+        for (int k = 0; k < 3; ++k)
+            between[k] = (double{image.min[k]} + double{image.max[k]}) / 2 -
+                         (double{a.bounds().min[k]} + double{a.bounds().max[k]}) / 2;
+        prefer(between);
         pending_.assign(1, {.gap = 0, .step = 0, .a = 0, .b = 0});
     }
 
@@ -114,8 +121,8 @@ private:
                                                                             std::size_t j, float slack) noexcept {
         const auto squared = [slack](simd::eight_floats gap) __attribute__((always_inline)) {
             gap -= slack;
-            const simd::eight_floats apart = gap > 0.0F ? gap : simd::eight_floats{};
-            return apart * apart;
+            const simd::eight_floats positive = gap > 0.0F ? gap : simd::eight_floats{};
+            return positive * positive;
         };
         simd::eight_floats sum{};
         for (std::size_t k = 0; k < 3; ++k) {
@@ -136,7 +143,7 @@ private:
         }
         return {boxes, height, count};
     }
-    /// The same of triangles, which may reach less far than their boxes.
+    /// The same of triangles, whose heights may be within those of their boxes.
     [[nodiscard]] extents reaching(const triangle_block& block, float sign) const noexcept {
         simd::eight_floats height{};
         for (std::size_t c = 0; c < 3; ++c) {
@@ -222,8 +229,9 @@ private:
     }
 
     template <class... Frame>
-    [[nodiscard]] static const triangle_block& read(leaf& into, const model<Tree>& m, std::uint32_t number,
-                                                    const Frame&... frame) {
+    [[nodiscard]] static const triangle_block& read(std::vector<leaf>& leaves, const model<Tree>& m,
+                                                    std::uint32_t number, const Frame&... frame) {
+        leaf& into = leaves[number % slots];
         if (into.number != number) {
             m.tree().read_vertices(number, into.vertices);
             into.block.load(m.triangles(), m.tree(), number, into.vertices, frame...);
@@ -236,10 +244,10 @@ private:
     template <class Counters, class Limit, class Visit>
     [[nodiscard]] bool visit_triangles(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
                                        const node_pair& p, Counters& counters, const Limit& limit, const Visit& visit) {
-        const triangle_block& of_a = read(leaves_[0], a, p.a);
-        const triangle_block& of_b = read(leaves_[1], b, p.b, to_a);
+        const triangle_block& of_a = read(leaves_of_a_, a, p.a);
+        const triangle_block& of_b = read(leaves_of_b_, b, p.b, to_a);
         counters.add(work::box_tests, std::uint64_t{of_a.triangles} * of_b.triangles);
-        // Without near points, leaves are probably apart along a line through both, and so are those next to them.
+        // Without near points, a line through both leaves probably separates them, and those next to them.
         if (!nearest_first_) prefer(first_corner_of(of_b) - first_corner_of(of_a));
         for (const auto& [gap, pair] : near_pairs(reaching(of_a, 1), reaching(of_b, -1), leaf_slack_, limit())) {
             if (nearest_first_ && double{gap} > limit()) break;
@@ -254,7 +262,7 @@ private:
     level_steps steps_;
     image_cache images_;  // of nodes of B, in A's frame
     std::vector<node_pair> pending_;
-    std::vector<leaf> leaves_;  // of A and of B
+    std::vector<leaf> leaves_of_a_, leaves_of_b_;
     std::array<near_pair, width * width> near_{};
     vec3f direction_{};
     float slack_ = 0, leaf_slack_ = 0;
