@@ -10,7 +10,7 @@ import aabblab.stopwatch;
 
 namespace aabblab {
 
-check_result check_boxes(scene_frames& scene, pair_list list, const std::optional<nearness>& within) {
+check_result check_boxes(scene_frames& scene, const pair_list& list, const std::optional<nearness>& within) {
     if (!list.has_frames && scene.frames() > 1)
         throw aabb::input_error(fmt::format(
             "the list has no frames, but the scene has {}: expected the columns frame,a,b", grouped(scene.frames())));
@@ -20,7 +20,7 @@ check_result check_boxes(scene_frames& scene, pair_list list, const std::optiona
     stage_runner searcher(std::move(method.run_stages), scene, method.filtered);
     double search_ms = 0;
     const wall_stopwatch preparing;
-    list_comparison comparison(std::move(list), {scene.frames(), objects, objects, /*is_symmetric=*/true});
+    list_comparison comparison(list, {scene.frames(), objects, objects, /*is_symmetric=*/true});
     double check_ms = preparing.ms();
     box_classes classes(within, scene.filter());
     progress shown("frames checked", scene.frames());

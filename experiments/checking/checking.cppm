@@ -94,7 +94,8 @@ inline constexpr std::size_t most_shown = 10;
 /// Checks a list of overlapping boxes in every frame of a scene, of the pairs that its filter keeps.
 /// @param within if the list is of the boxes that are so near each other
 /// @throws aabb::input_error if the list has no frames although the scene has several.
-[[nodiscard]] check_result check_boxes(scene_frames& scene, pair_list list, const std::optional<nearness>& within = {});
+[[nodiscard]] check_result check_boxes(scene_frames& scene, const pair_list& list,
+                                       const std::optional<nearness>& within = {});
 
 /// Checks a list of contacts, or of triangles that are near each other, in every frame of a scene of meshes.
 /// @throws aabb::input_error likewise, and if the objects have 2^32 - 1 triangles or more in all.
@@ -111,7 +112,7 @@ struct mesh_check {
     std::string between = {};  ///< for messages
 };
 /// Checks a list of intersecting triangles of two meshes, in every pose, or of one mesh with itself.
-[[nodiscard]] check_result check_triangles(const mesh_check& meshes, pair_list list);
+[[nodiscard]] check_result check_triangles(const mesh_check& meshes, const pair_list& list);
 
 /// What a list is of, for reports.
 struct checked_list {

@@ -12,21 +12,28 @@ std::uint64_t check_result::false_positives() const {
 }
 
 /// Orders the rows by frame, and sorts out those that no frame has.
-list_comparison::list_comparison(pair_list list, const list_extent& of)
+list_comparison::list_comparison(const pair_list& list, const list_extent& of)
     : of_(of), begins_(of.frames + 1), explanation_(of) {
-    result_.listed = list.rows.size();
-    for (listed_pair& row : list.rows) {
-        if (of.is_symmetric && row.pair.a > row.pair.b) std::swap(row.pair.a, row.pair.b);
-        if (row.frame >= of.frames)
-            ++result_.unknown_frames;
-        else
-            ++begins_[row.frame + 1];
+    const auto pair_of = [&](const listed_pair& row) {
+        return of.is_symmetric ? aabb::ordered_pair(row.pair.a, row.pair.b) : row.pair;
+    };
+    if (std::ranges::is_sorted(list.rows, {}, &listed_pair::frame)) {
+        for (std::size_t frame = 0; frame < begins_.size(); ++frame)
+            begins_[frame] = static_cast<std::size_t>(
+                std::ranges::lower_bound(list.rows, frame, {}, &listed_pair::frame) - list.rows.begin());
+        pairs_.reserve(begins_.back());
+        for (const listed_pair& row : std::span(list.rows).first(begins_.back())) pairs_.push_back(pair_of(row));
+    } else {
+        for (const listed_pair& row : list.rows)
+            if (row.frame < of.frames) ++begins_[row.frame + 1];
+        std::partial_sum(begins_.begin(), begins_.end(), begins_.begin());
+        pairs_.resize(begins_.back());
+        std::vector<std::size_t> next(begins_.begin(), begins_.end() - 1);
+        for (const listed_pair& row : list.rows)
+            if (row.frame < of.frames) pairs_[next[row.frame]++] = pair_of(row);
     }
-    std::partial_sum(begins_.begin(), begins_.end(), begins_.begin());
-    pairs_.resize(begins_.back());
-    std::vector<std::size_t> next(begins_.begin(), begins_.end() - 1);
-    for (const listed_pair& row : list.rows)
-        if (row.frame < of.frames) pairs_[next[row.frame]++] = row.pair;
+    result_.listed = list.rows.size();
+    result_.unknown_frames = list.rows.size() - pairs_.size();
 }
 
 /// Whether sorted rows are pairs that the scene can have, each once.

@@ -30,7 +30,7 @@ public:
     /// Receives the wrong pairs of each frame that has some.
     using observer = std::function<void(const frame_errors&)>;
 
-    list_comparison(pair_list list, const list_extent& of);
+    list_comparison(const pair_list& list, const list_extent& of);
 
     /// Compares a frame; all frames must be compared in order.
     /// @param truth sorted, without repetitions; with a < b if symmetric

@@ -9,7 +9,7 @@ import aabblab.stopwatch;
 
 namespace aabblab {
 
-check_result check_triangles(const mesh_check& meshes, pair_list list) {
+check_result check_triangles(const mesh_check& meshes, const pair_list& list) {
     const std::size_t poses = meshes.poses_b.poses.size();
     if (!list.has_frames && poses > 1)
         throw aabb::input_error(
@@ -28,8 +28,7 @@ check_result check_triangles(const mesh_check& meshes, pair_list list) {
     const wall_stopwatch checking;
     const aabb::mesh& a = meshes.meshes.front();
     const aabb::mesh& b = meshes.meshes.back();
-    list_comparison comparison(std::move(list),
-                               {poses, a.triangle_count(), b.triangle_count(), meshes.self.has_value()});
+    list_comparison comparison(list, {poses, a.triangle_count(), b.triangle_count(), meshes.self.has_value()});
     triangle_classes classes(meshes.within);
     for (std::size_t pose = 0; pose < poses; ++pose) {
         const posed_surface placed_a{a, meshes.pose_a, meshes.self ? "triangle" : "A"};
