@@ -768,7 +768,7 @@ TEST_CASE("what lies inside is what CGAL finds, for made meshes at any poses") {
     CHECK(contacts.counts[contact_relation::touching] > 1);
 }
 
-/// A copy of a mesh that shares a vertex with another one, and lies below or above it there.
+/// A slender copy of a mesh that shares a vertex with another one, and lies below or above it there.
 std::optional<mesh> copy_at_vertex(const mesh& m, const mesh& other, double factor) {
     const auto corners = other.triangles[*rc::gen::inRange<std::size_t>(0, other.triangles.size())];
     const vec3d at = other.given_vertex(corners[0]);
@@ -798,7 +798,9 @@ std::optional<mesh> copy_at_vertex(const mesh& m, const mesh& other, double fact
     mesh copy = m;
     std::vector<vec3d> vertices;
     for (std::size_t v = 0; v < m.vertices.size(); ++v) {
-        const vec3d from_top = m.given_vertex(v) - top;
+        vec3d from_top = m.given_vertex(v) - top;
+        const double height = dot(direction, from_top);
+        for (int k = 0; k < 3; ++k) from_top[k] = 0.9 * height * direction[k] + 0.1 * from_top[k];
         const double along = 2 * dot(middle, from_top);
         vec3d moved{};
         for (int k = 0; k < 3; ++k) moved[k] = at[k] + factor * (along * middle[k] - from_top[k]);
