@@ -152,6 +152,7 @@ inline int first_wrong_frame(std::unique_ptr<aabb::global_stage> search, const f
     aabb::collision_filter filter;
     const auto stage = filtered(std::move(search), filter);
     std::vector<bool> present;
+    bool any_yet = false;  // before the first object comes there are no boxes
     for (std::size_t f = 0; f < scene.frames.size(); ++f) {
         const filtered_scene::frame& frame = scene.frames[f];
         frame.filter.tell(filter);
@@ -160,7 +161,7 @@ inline int first_wrong_frame(std::unique_ptr<aabb::global_stage> search, const f
             present[id] ? stage->remove(id) : stage->insert(id);
             present[id] = !present[id];
         }
-        const bool any_yet = f > 0 || !frame.toggled.empty();
+        any_yet |= !frame.toggled.empty();
         const auto boxes = std::span(frame.boxes).first(any_yet ? frame.boxes.size() : 0);
         if (found_by(*stage, boxes) != frame.pairs) return static_cast<int>(f);
         if (usage) usage->add(*stage);

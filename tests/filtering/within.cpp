@@ -50,6 +50,7 @@ int first_wrong_frame_of(const filtered_scene& scene, Make make) {
     collision_filter filter;
     auto search = make(filter);
     std::vector<bool> present;
+    bool any_yet = false;  // before the first object comes there are no boxes
     for (std::size_t f = 0; f < scene.frames.size(); ++f) {
         const filtered_scene::frame& frame = scene.frames[f];
         frame.filter.tell(filter);
@@ -58,7 +59,7 @@ int first_wrong_frame_of(const filtered_scene& scene, Make make) {
             present[id] ? search.remove(id) : search.insert(id);
             present[id] = !present[id];
         }
-        const bool any_yet = f > 0 || !frame.toggled.empty();
+        any_yet |= !frame.toggled.empty();
         if (found_by(search, std::span(frame.boxes).first(any_yet ? frame.boxes.size() : 0)) != frame.pairs)
             return static_cast<int>(f);
     }
