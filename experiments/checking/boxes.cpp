@@ -17,7 +17,7 @@ check_result check_boxes(scene_frames& scene, const pair_list& list, const std::
     const auto objects = scene.objects();
     search_method method = method_of(
         {.stages = {aabb::stage::global_search}, .named = {}, .engine = {}, .within = within}, traits_of(scene));
-    stage_runner searcher(std::move(method.run_stages), scene, method.filtered);
+    stage_runner searcher(std::move(method.run_stages), scene);
     double search_ms = 0;
     const wall_stopwatch preparing;
     list_comparison comparison(list, {scene.frames(), objects, objects, /*is_symmetric=*/true});

@@ -75,7 +75,7 @@ check_result check_contacts(scene_frames& scene, const contact_list& list, const
                                       .within = within},
                                      traits_of(scene));
     const wall_stopwatch building;
-    stage_runner searcher(std::move(method.run_stages), scene, method.filtered);
+    stage_runner searcher(std::move(method.run_stages), scene);
     double search_ms = building.ms();
     const wall_stopwatch preparing;
     const aabb::mesh_scene& meshes = *scene.meshes();

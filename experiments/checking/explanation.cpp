@@ -110,18 +110,16 @@ void list_explanation::test_ids(const compared_frame& frame) {
     };
     test(from_one_, [&] { return are_from_one(frame); });
     // The id -1 is `beyond_all`, and becomes 0.
-    test(from_minus_one_, [&] {
-        return are_moved(frame, of_, [](index_pair row) { return index_pair{row.a + 1, row.b + 1}; });
-    });
+    test(from_minus_one_,
+         [&] { return are_moved(frame, of_, [](index_pair row) { return index_pair{row.a + 1, row.b + 1}; }); });
     test(reversed_, [&] {
         return !of_.is_symmetric && are_moved(frame, of_, [](index_pair row) { return index_pair{row.b, row.a}; });
     });
     test(mirrored_, [&] {
         const auto last_a = static_cast<std::uint32_t>(of_.ids_a - 1),
                    last_b = static_cast<std::uint32_t>(of_.ids_b - 1);
-        return are_moved(frame, of_, [last_a, last_b](index_pair row) {
-            return index_pair{last_a - row.a, last_b - row.b};
-        });
+        return are_moved(frame, of_,
+                         [last_a, last_b](index_pair row) { return index_pair{last_a - row.a, last_b - row.b}; });
     });
     if (!of_.is_symmetric) return;
     if (exchanges_)
