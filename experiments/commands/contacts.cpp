@@ -108,9 +108,9 @@ void find_contacts(const contacts_request& request) {
     scene_frames scene(open_motion(request.motion, read_meshes(request.meshes)), request.motion);
     std::optional<frame_drawing> drawn;
     if (drawing) drawn.emplace(frame_of(request, scene.frames()), *drawing);
-    std::optional<contact_intervals> intervals;
-    if (interval_rows) intervals.emplace(scene, choice.named, *interval_rows);
     search_method method = method_of(choice, traits_of(scene), read_filter(request.filter, scene.objects()));
+    std::optional<contact_intervals> intervals;
+    if (interval_rows) intervals.emplace(scene, choice.named, method.filter.get(), *interval_rows);
     const frames_result result = search_frames(
         scene, method, {rows ? &*rows : nullptr, drawn ? &*drawn : nullptr, intervals ? &*intervals : nullptr},
         {.touching = request.touching, .geometry = request.geometry});

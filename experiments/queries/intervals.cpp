@@ -33,13 +33,13 @@ struct object_pair {
     std::vector<interval> intervals = std::vector<interval>(1);  ///< the last one goes on
 };
 
-std::vector<object_pair> pairs_of(const scene_frames& scene) {
+std::vector<object_pair> pairs_of(const scene_frames& scene, const aabb::collision_filter* filter) {
     constexpr std::size_t most = 500'000;
     const auto objects = static_cast<std::uint32_t>(scene.objects());
     std::vector<object_pair> pairs;
     for (std::uint32_t a = 0; a < objects; ++a)
         for (std::uint32_t b = a + 1; b < objects; ++b) {
-            if (scene.filter() && !scene.filter()->keeps(a, b)) continue;
+            if (filter != nullptr && !filter->keeps(a, b)) continue;
             if (pairs.size() == most)
                 throw aabb::input_error(fmt::format(
                     "--intervals follows at most {} pairs of objects; leave pairs out by --groups or --except",
@@ -89,8 +89,9 @@ struct contact_intervals::state {
     }
 };
 
-contact_intervals::contact_intervals(const scene_frames& scene, const aabb::named_strategies& named, number_table& rows)
-    : state_(std::make_unique<state>(state{scene, rows, nullptr, pairs_of(scene)})) {
+contact_intervals::contact_intervals(const scene_frames& scene, const aabb::named_strategies& named,
+                                     const aabb::collision_filter* filter, number_table& rows)
+    : state_(std::make_unique<state>(state{scene, rows, nullptr, pairs_of(scene, filter)})) {
     state_->distances = aabb::compose_distance(select_composition(named, traits_of(scene)));
     for (const aabb::mesh& m : scene.meshes()->meshes) state_->distances->add_model(m);
 }

@@ -122,9 +122,11 @@ public:
         "object_a,object_b,nearest_frame,distance,error,first_frame,last_frame,triangle_a,triangle_b,x,y,z,point_error";
 
     /// @param named the strategies of the trees through which distances are measured
+    /// @param filter which pairs of objects are followed; null for all
     /// @param scene,rows must outlive this object
     /// @throws aabb::input_error if there are too many pairs of objects
-    contact_intervals(const scene_frames& scene, const aabb::named_strategies& named, number_table& rows);
+    contact_intervals(const scene_frames& scene, const aabb::named_strategies& named,
+                      const aabb::collision_filter* filter, number_table& rows);
     ~contact_intervals();
 
     /// Adds the scene's current frame.

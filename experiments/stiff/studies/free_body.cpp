@@ -148,7 +148,7 @@ void judge_fixed_steps(const stiff_setting& setting, const integrator_info& i, s
         return;
     }
     // Half the step has at most half the error, so at most the difference of both, unless neither is near.
-    const double tolerance = std::min(std::abs(half.flips[2] - whole.flips[2]) / (3 * interval), 0.01);
+    const double tolerance = std::min(std::abs(half.flips[2] - whole.flips[2]) / (3 * interval), 0.02);
     result.add(within(name, "third flip (s)", half.flips[2], 3 * interval, tolerance));
 }
 
