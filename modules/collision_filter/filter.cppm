@@ -36,7 +36,7 @@ public:
     }
 
     /// Adds exceptions, pairs that are not tested whatever else is known of them, each in either order, or removes such
-    /// exceptions again. A call takes time for all exceptions, so many are best passed at once.
+    /// exceptions again. A call takes time for all exceptions: pass them together.
     void add_exceptions(std::span<const index_pair> pairs) {
         std::vector<index_pair> all = in_order(pairs);
         const auto added = static_cast<std::ptrdiff_t>(all.size());
