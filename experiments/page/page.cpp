@@ -32,6 +32,20 @@ std::string markdown_target(std::string_view id) {
     return element("a", {{"id", id}}, "") + "\n\n";
 }
 
+/// The text as HTML, with what stands between backticks as code.
+std::string with_code(std::string_view text) {
+    std::string markup;
+    bool is_code = false;
+    while (!text.empty()) {
+        const std::size_t end = std::min(text.find('`'), text.size());
+        const std::string part = markup_text(text.substr(0, end));
+        markup += is_code ? element("code", {}, part) : part;
+        text.remove_prefix(std::min(end + 1, text.size()));
+        is_code = !is_code;
+    }
+    return markup;
+}
+
 }  // namespace
 
 /// The table in HTML, in an element that scrolls; columns of numbers have a class, for their alignment.
@@ -103,7 +117,7 @@ std::string page::markdown() const {
 }
 
 void page::paragraph(std::string_view text, std::string_view kind) {
-    html_ += element("p", {{"class", kind}}, markup_text(text)) + "\n";
+    html_ += element("p", {{"class", kind}}, with_code(text)) + "\n";
     const std::string weight = kind == "wrong" ? "**" : "";
     markdown_ += weight + std::string(text) + weight + "\n\n";
 }

@@ -102,7 +102,10 @@ draft c2_claim(const measurements& m) {
             c2.add(std::move(growth), subject, "inversions", quantity::work);
         }
     if (by_displacement.empty()) return c2;
-    c2.claim.tables.push_back({"c2_inversions", "Inversions per element, which should be equal at all sizes.",
+    c2.claim.tables.push_back({"c2_inversions",
+                               "Inversions per element. On the longest lines floats round small displacements away, "
+                               "so they have fewer. A list in which any key stays the same is merged with those that "
+                               "changed, which moves each element once more.",
                                inversions_table(by_displacement)});
     figure& f = c2.claim.figures.emplace_back(
         log_log("c2",

@@ -217,7 +217,7 @@ std::vector<open_choice> open_choices(const measurements& m) {
             "What are \"different models\"?",
             "scanned animals in a crowd, many small generated ones, and simple ones far apart",
             "the paper names none; the narrow phase takes nearly all of the time in the first two, and the broad phase "
-            "takes two thirds or more in the last",
+            "takes most of it in the last",
             "C11", model_choices(m)),
     };
 }

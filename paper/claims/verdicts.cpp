@@ -86,8 +86,9 @@ std::string text_of(const factors& where) {
 
 /// Each claim's verdict, first primary ratio, and numbers of secondary ratios by outcome.
 table verdict_table(const reproduction& results) {
-    table t =
-        empty_table({"", "claim", "verdict", "in words"}, {"ratio", "95 %", "for", "against", "same", "undecided"});
+    table t = empty_table(
+        {"", "claim", "verdict", "in words"},
+        {"first primary ratio", "95 %", "secondary for", "secondary against", "secondary same", "secondary undecided"});
     for (const claim_result& c : results.claims) {
         std::vector<std::string>& cells =
             t.rows.emplace_back(std::vector{c.id, c.claim, text_of(c.verdict), c.sentence});

@@ -152,7 +152,8 @@ table summary_table(const reproduction& reproduced, const std::optional<publishe
     table t = empty_table({"", "what is claimed", "in its authors' words", "verdict", "by how much"});
     if (published) t.columns.push_back({"published run", /*is_number=*/false});
     for (const claim_result& c : reproduced.claims) {
-        t.rows.push_back({c.id, c.claim, c.quote, text_of(c.verdict), ratios_text(c)});
+        const std::string origin = c.of == "paper" ? "" : ". " + origin_text(c);
+        t.rows.push_back({c.id, c.claim + origin, c.quote, text_of(c.verdict), ratios_text(c)});
         if (published) t.rows.back().push_back(agreement_text(c, published_claim(c, published)));
     }
     return t;

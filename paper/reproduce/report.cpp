@@ -59,7 +59,8 @@ std::string paragraph(std::string_view kind, const std::string& markup) {
 std::string run_text(const provenance& origin) {
     return fmt::format(
         "The run: {}, {} size, commit {}, {} ({}), {}. {} rows of {} scenes, each with up to {} seeds; per composition "
-        "and seed up to {} repeats in all, over {} processes. Other machines, compilers and scenes may give other "
+        "and seed up to {} repeats in all, over {} processes; the small atlas and the errors have rows of their own. "
+        "Other machines, compilers and scenes may give other "
         "ratios: compare ratios, never times.",
         origin.date, origin.size, origin.commit, origin.compiler, origin.flags, origin.cpu, grouped(origin.rows),
         origin.scenes, origin.seeds, origin.repeats, origin.processes);

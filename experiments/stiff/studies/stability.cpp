@@ -107,7 +107,9 @@ stiff_study stability_study() {
         {figure{.name = "energy_drift",
                 .caption =
                     "Relative drift of a ball's energy over 1000 periods (100 with --quick) in contact, its "
-                    "absolute value, over the step size. Marks show the usual advice and the greatest stable steps.",
+                    "absolute value, over the step size; of symplectic integrators, that of the modified energy that "
+                    "they conserve. An integrator is stopped at a thousand times the energy. Marks show the usual "
+                    "advice and the greatest stable steps.",
                 .x = {"step times angular frequency", /*logarithmic=*/true},
                 .y = {"relative energy drift", /*logarithmic=*/true},
                 .marks = marks()}}};
