@@ -9,6 +9,16 @@ import aabblab.stopwatch;
 
 namespace aabblab {
 
+/// The integrators with which a setting lets a study run.
+[[nodiscard]] std::vector<integrator_info> integrators_of(const stiff_setting& setting) {
+    std::vector<integrator_info> chosen;
+    std::ranges::copy_if(integrators(), std::back_inserter(chosen), [&](const integrator_info& i) {
+        return setting.integrators.empty() ||
+               std::ranges::find(setting.integrators, i.name) != setting.integrators.end();
+    });
+    return chosen;
+}
+
 /// A scene with one frame for each position at which an integrator evaluates forces.
 class posed_bodies final : public aabb::mesh_scene {
 public:
@@ -60,6 +70,9 @@ public:
 
     [[nodiscard]] const motion_state& state() const { return state_; }
     [[nodiscard]] std::uint64_t detections() const { return detections_; }
+    /// Times detections from now on. Reading the clocks takes as long as detecting the contacts of a few bodies.
+    void time_detections() { is_timed_ = true; }
+    /// The processor time of those that were timed.
     [[nodiscard]] double detection_ms() const { return detection_ms_; }
 
     /// The sorted contacts at the current positions; detects them only if the integrator did not evaluate these last.
@@ -84,17 +97,17 @@ private:
         return world;
     }
 
-    /// Moves the scene's bodies to where they are in a state, and detects their sorted contacts by both phases, which
-    /// it times.
+    /// Moves the scene's bodies to where they are in a state, and detects their sorted contacts by both phases.
     std::span<const aabb::contact> detect_at(const motion_state& state) {
         bodies_->move_to(state);
         detected_ = state;
         frames_.next();
-        stopwatch watch;
+        std::optional<stopwatch> watch;
+        if (is_timed_) watch.emplace();
         runner_.update();
         runner_.search();
         runner_.detect();
-        detection_ms_ += watch.lap().cpu_ms;
+        if (watch) detection_ms_ += watch->lap().cpu_ms;
         ++detections_;
         return runner_.sorted_contacts();
     }
@@ -110,6 +123,7 @@ private:
     motion_rates ignored_;
     motion_state detected_;  // at the last detection
     std::uint64_t detections_ = 0;
+    bool is_timed_ = false;
     double detection_ms_ = 0;
 };
 

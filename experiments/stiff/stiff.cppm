@@ -51,10 +51,12 @@ struct stiff_fault {
 
 struct stiff_setting {
     bool quick = false;
-    candidate tested;  ///< finds the contacts, unless the study compares methods
+    candidate tested;  ///< finds the contacts; of a study that compares methods, the exact ones
     /// Receives the completed share of a study, from 0 to 1.
     std::function<void(double)> progress = [](double) {};
     stiff_fault fault = {};
+    /// The names of those that a study runs with, of the ones that it would choose itself; all if empty.
+    std::vector<std::string_view> integrators = {};
 };
 
 struct stiff_study {

@@ -109,7 +109,7 @@ double order_of(std::span<const double> steps, std::span<const double> errors) {
 /// Lets a ball bounce without a dashpot, and adds each integrator's error at the smallest step and measured order.
 void measure_convergence(const stiff_setting& setting, stiff_result& result) {
     constexpr std::array steps = {0.4, 0.2, 0.1, scaled_step};
-    for (const integrator_info& i : integrators()) {
+    for (const integrator_info& i : integrators_of(setting)) {
         std::vector<trajectory_error> errors;
         run_or_record_failure(result, i.name, [&] {
             for (const double y : steps) errors.push_back(error_of(setting.tested, i, y / frequency));
@@ -138,7 +138,7 @@ void measure_contacts(const stiff_setting& setting, stiff_result& result) {
     for (const bool pulls : {true, false})
         for (const double damping : {0.1, 0.5}) {
             const oscillator contact{frequency, damping, pulls};
-            for (const integrator_info& i : integrators())
+            for (const integrator_info& i : integrators_of(setting))
                 run_or_record_failure(result, i.name, [&] {
                     const bounce measured = bounce_of(contact, setting.tested, i);
                     const bounce_bounds bounds = bounds_of(contact, i, measured.detections);

@@ -38,7 +38,7 @@ void measure_stop(const stiff_setting& setting, stiff_result& result) {
     const double distance = speed * until_stop / 2;
     const double step = 0.2 * decay_of_slip(contact);
     const stepped_world world = block_on_incline(ground, contact, flat, speed);
-    for (const integrator_info& i : integrators()) {
+    for (const integrator_info& i : integrators_of(setting)) {
         run_or_record_failure(result, i.name, [&] {
             simulation block(world, setting, i, adaptive_tolerance);
             double time = 0, velocity = speed, lift = 0;
@@ -76,7 +76,7 @@ void measure_slide(const stiff_setting& setting, stiff_result& result) {
     const double sine = std::sin(floor.angle), cosine = std::cos(floor.angle);
     const double step = 0.2 * decay_of_slip(contact);
     const double slides = earth_gravity * (sine - friction * cosine);
-    for (const integrator_info& i : integrators()) {
+    for (const integrator_info& i : integrators_of(setting)) {
         run_or_record_failure(result, i.name, [&] {
             simulation block(block_on_incline(floor, contact, flat, /*speed=*/0), setting, i, adaptive_tolerance);
             const double start = floor.path(block.state(), 1);
@@ -101,7 +101,7 @@ void measure_creep(const stiff_setting& setting, stiff_result& result) {
         // The slip settles to e^-12. The slowest motion of the springs, a tilt with the frequency √2.4 ω and 1.55 of
         // the critical damping, decays at 0.57 ω: to e^-17.
         const double end = std::max(12 * decay_of_slip(contact) / std::cos(floor.angle), 30 / contact.frequency);
-        for (const integrator_info& i : integrators()) {
+        for (const integrator_info& i : integrators_of(setting)) {
             run_or_record_failure(result, i.name, [&] {
                 simulation block(block_on_incline(floor, contact, flat, /*speed=*/0), setting, i,
                                  adaptive_tolerance * slip_speed);
@@ -142,7 +142,7 @@ void measure_tipping(const stiff_setting& setting, stiff_result& result) {
     const double growth = std::cosh(std::sqrt(0.75 * earth_gravity / half_diagonal)) - 1;
     const double slow = 0.45 / growth * (1 + limit * limit) / limit;
     const double step = 0.2 / contact.frequency;
-    for (const integrator_info& i : integrators()) {
+    for (const integrator_info& i : integrators_of(setting)) {
         if (!i.is_symplectic() || i.stable_below > 2) continue;  // others take the same way with more detections
         run_or_record_failure(result, i.name, [&] {
             double stands = 0.9, tips = 1.1;  // tan θ h/b

@@ -30,12 +30,17 @@ double step() {
 stepped_world row_of_balls(double gap, double damping) {
     stepped_world world;
     world.meshes = {mesh_around_ball()};
-    for (std::size_t i = 0; i < balls; ++i)
+    for (std::size_t i = 0; i < balls; ++i) {
+        // Each cube is turned about x by another angle: coplanar sides would be decided in exact arithmetic, which
+        // takes twenty times as long.
+        const double angle = 0.3 * static_cast<double>(i), cosine = std::cos(angle), sine = std::sin(angle);
         world.bodies.push_back({.position = {(2 * ball_radius + gap) * static_cast<double>(i), 0, 0},
                                 .velocity = {i == 0 ? speed : 0, 0, 0},
                                 .mass = 1,
+                                .rotation = {1, 0, 0, 0, cosine, -sine, 0, sine, cosine},
                                 .inertia = inertia_of_ball(1, ball_radius),
                                 .radius = ball_radius});
+    }
     world.law = {.stiffness = stiffness, .damping = damping, .may_pull = false};
     return world;
 }
@@ -63,7 +68,7 @@ void run_cradle(const stiff_setting& setting, stiff_result& result) {
         // The slowest ball takes two contact times to the next one.
         const double gap = 2 * contact_time() * speed;
         const double end = 2 * static_cast<double>(balls) * (gap / last_speed + contact_time());
-        for (const integrator_info& i : integrators()) {
+        for (const integrator_info& i : integrators_of(setting)) {
             if (i.stable_below == 0) continue;  // explicit Euler gains energy in every contact
             if (is_left_out(i, setting)) continue;
             run_or_record_failure(result, i.name, [&] {
@@ -84,7 +89,7 @@ void run_cradle(const stiff_setting& setting, stiff_result& result) {
             });
         }
     }
-    for (const integrator_info& i : integrators()) {
+    for (const integrator_info& i : integrators_of(setting)) {
         if (i.order != 2 || i.adaptive || is_left_out(i, setting)) continue;
         simulation row(row_of_balls(/*gap=*/0, /*damping=*/0), setting, i);
         while (row.state().time < 4 * static_cast<double>(balls) * contact_time()) row.advance(step());

@@ -47,6 +47,7 @@ public:
                                  std::size_t stored_every, bool with_energy, double tolerance = 0) const {
         trajectory t;
         simulation balls(world_, tested, stepping, tolerance);
+        balls.time_detections();
         const double initial_energy = dynamics(world_).mechanical_energy(balls.state());
         const auto steps = static_cast<std::size_t>(std::llround(seconds(end) / step));
         double squares = 0;  // of relative energy errors
@@ -213,7 +214,7 @@ void compare_steps(const dropped_balls& balls, const stiff_setting& setting, sti
     const trajectory reference = balls.run(setting.tested, verlet, finest, stored_every(finest), /*with_energy=*/false);
     const auto error_of = [&](const trajectory& t) { return balls.departures(t, reference).back(); };
     constexpr auto error_at_end = "trajectory error at the end (diameters)";
-    for (const integrator_info& i : integrators())
+    for (const integrator_info& i : integrators_of(setting))
         run_or_record_failure(result, i.name, [&] {
             std::vector<double> energy_errors;
             for (const double knob : i.adaptive ? tolerances : steps) {
@@ -276,7 +277,7 @@ std::vector<figure> figures() {
 void run_dropped(const stiff_setting& setting, stiff_result& result) {
     const std::size_t side = setting.quick ? 3 : 6;
     const dropped_balls balls(side, /*diameter=*/1);
-    compare_steps(balls, setting, result);
+    if (!integrators_of(setting).empty()) compare_steps(balls, setting, result);
     // The published value is the mean squared error over the run, J², of an energy of 34,454 J.
     constexpr std::pair<const char*, double> published[] = {{"RAI without ERP", 8.36835},
                                                             {"ODE", 112.326},

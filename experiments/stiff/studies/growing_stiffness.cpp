@@ -21,7 +21,9 @@ bool is_stable(const stiff_setting& setting, const integrator_info& stepping, do
     const double amplitude = oscillating_ball::gravity / (frequency * frequency) * 1e-3;
     oscillating_ball ball(setting.tested, stepping, frequency, amplitude);
     double before = 0, after = 0;
-    const int steps = setting.quick ? 10'000 : 20'000;
+    // 0.2 % beyond their limits, the energy of Dormand and Prince's method grows by 2e-6 a step, that of others by a
+    // hundredth and more.
+    const int steps = !setting.quick ? 20'000 : stepping.order > 4 ? 10'000 : 1000;
     for (int i = 0; i < steps; ++i) {
         ball.advance(step);
         if (!ball.is_linear()) return false;
@@ -75,7 +77,7 @@ double greatest_gain(const candidate& tested, const integrator_info& stepping, d
 /// measures the energy that a bouncing ball gains.
 void run_growing_stiffness(const stiff_setting& setting, stiff_result& result) {
     const int phases = setting.quick ? 50 : 500;
-    for (const integrator_info& i : integrators()) {
+    for (const integrator_info& i : integrators_of(setting)) {
         if (i.adaptive) continue;
         run_or_record_failure(result, i.name, [&] {
             constexpr auto quantity = "dt·ω at which it fails";

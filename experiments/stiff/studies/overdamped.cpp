@@ -30,7 +30,7 @@ void run_overdamped(const stiff_setting& setting, stiff_result& result) {
         // With central differences, the rate of the dashpot limits steps to 1/(2ζω).
         const double explicit_steps = end * 2 * damping * frequency;
         const stepped_world world = ball_on_floor({frequency, damping}, /*speed_down=*/0, gravity);
-        for (const integrator_info& i : integrators()) {
+        for (const integrator_info& i : integrators_of(setting)) {
             if (!i.adaptive) continue;
             // Other adaptive integrators need as many steps as an explicit one, too many for stiff contacts.
             if (i.name != "bdf" && explicit_steps > (setting.quick ? 1e4 : 1e6)) continue;

@@ -105,7 +105,8 @@ void run_sliding(const stiff_setting& setting, stiff_result& result) {
                                                {"1 m", oblique(), 1, -1e-5},
                                                {"10 mm", oblique(), 0.01, -1e-5},
                                                {"0.1 mm", oblique(), 1e-4, -1e-5}};
-    const std::vector<method> methods = triangle_methods(setting.quick);
+    std::vector<method> methods = triangle_methods(setting.quick);
+    std::ranges::find(methods, "exact", &method::label)->tested = setting.tested;
     constexpr std::size_t most_drawn = 9;
     std::size_t drawn = 0, done = 0;
     for (const placement& p : placements)

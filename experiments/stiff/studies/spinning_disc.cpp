@@ -127,7 +127,7 @@ void run_spinning_disc(const stiff_setting& setting, stiff_result& result) {
     // A disc that only spins: the torque is 2/3 μ m g R.
     const double until_stop = 3 * speed / (4 * friction * earth_gravity);
     constexpr double radius = 0.1;  // R, m
-    for (const integrator_info& i : integrators()) {
+    for (const integrator_info& i : integrators_of(setting)) {
         if (!i.is_symplectic() || i.stable_below > 2) continue;  // others take the same way with more detections
         const std::string subject = std::string(i.name) + ", only spins";
         run_or_record_failure(result, i.name, [&] {
