@@ -8,12 +8,6 @@ namespace aabblab {
 
 namespace {
 
-/// The name of an engine, or the strategies of a composition other than `none`.
-std::string label_of(candidate_name name) {
-    std::ranges::replace(name.choices.all, "none", "");
-    return name.engine.empty() ? aabblab::label_of(name.choices) : name.engine;
-}
-
 /// The scene with the defaults of its run in place of today's.
 scene_choice completed(scene_choice scene, const scene_defaults& defaults) {
     for (const aabb::setting& s : defaults.parameters)
@@ -23,6 +17,16 @@ scene_choice completed(scene_choice scene, const scene_defaults& defaults) {
 }
 
 }  // namespace
+
+std::string label_of(candidate_name name) {
+    std::ranges::replace(name.choices.all, "none", "");
+    return name.engine.empty() ? label_of(name.choices) : name.engine;
+}
+
+bool is_timed(const row& r) {
+    return r.status == "exact" && measured("frame_cpu_ms")(r).value_or(0) > 0 &&
+           measured("whole_cpu_ms")(r).value_or(0) > 0;
+}
 
 const atlas_candidate* atlas_scene::find(std::string_view label) const {
     const auto candidate = std::ranges::find(candidates, label, &atlas_candidate::label);
@@ -78,23 +82,24 @@ estimate log_ratio(const atlas_candidate& candidate, const atlas_candidate& base
 std::vector<atlas_scene> read_atlas(const std::filesystem::path& folder, bool is_held_out) {
     std::vector<atlas_scene> atlas;
     const std::vector<scene_defaults> defaults = read_scene_defaults(folder);
+    const std::optional<recorded_measures> recorded = read_measures(folder);
     std::map<scene_choice, std::size_t> indices;
     for (const row& r : verified_rows(folder)) {
-        const std::optional<double> frame_ms = measured("frame_cpu_ms")(r);
-        const std::optional<double> whole_ms = measured("whole_cpu_ms")(r);
-        if (r.status != "exact" || frame_ms.value_or(0) <= 0 || whole_ms.value_or(0) <= 0) continue;
+        if (!is_timed(r)) continue;
         const auto [index, is_new] = indices.emplace(r.scene, atlas.size());
         if (is_new) {
             const auto stated = std::ranges::find(defaults, r.scene.kind, &scene_defaults::kind);
             const scene_defaults of_kind = stated != defaults.end() ? *stated : scene_defaults();
-            atlas.push_back({r.scene, is_held_out, measure_scene(completed(r.scene, of_kind)), {}, of_kind});
+            const scene_measures measures =
+                recorded ? recorded->of(r.scene) : measure_scene(completed(r.scene, of_kind));
+            atlas.push_back({r.scene, is_held_out, measures, {}, of_kind});
         }
         std::vector<atlas_candidate>& candidates = atlas[index->second].candidates;
         const std::string label = label_of(r.name);
         auto candidate = std::ranges::find(candidates, label, &atlas_candidate::label);
         if (candidate == candidates.end()) candidate = candidates.emplace(candidate, label, r.name.is_automatic());
-        candidate->frame_ms.push_back(*frame_ms);
-        candidate->whole_ms.push_back(*whole_ms);
+        candidate->frame_ms.push_back(*measured("frame_cpu_ms")(r));
+        candidate->whole_ms.push_back(*measured("whole_cpu_ms")(r));
     }
     std::erase_if(atlas,
                   [](const auto& s) { return std::ranges::all_of(s.candidates, &atlas_candidate::is_automatic); });

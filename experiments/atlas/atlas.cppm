@@ -33,8 +33,8 @@ struct atlas_candidate {
 
 struct atlas_scene {
     scene_choice scene;
-    bool is_held_out = false;  ///< not in the map, or kept to test a law that is fitted to the others
-    scene_measures measures;
+    bool is_held_out = false;                 ///< not in the map, or kept to test a law that is fitted to the others
+    scene_measures measures;                  ///< of recorded ones, those of measures.csv only
     std::vector<atlas_candidate> candidates;  ///< exact ones
     scene_defaults defaults{};                ///< of its parameters when it was run; empty in older results
 
@@ -59,8 +59,18 @@ struct atlas_scene {
 /// The logarithm of the ratio of two candidates' times per frame, over the repeats that both have.
 [[nodiscard]] estimate log_ratio(const atlas_candidate& candidate, const atlas_candidate& baseline);
 
-/// Reads the scenes of an experiment from its results folder. Each scene is generated again to compute its measures.
+/// Writes measures.csv beside the rows of an experiment: what the atlas uses of the measures of its scenes.
+void write_measures(const std::filesystem::path& folder, std::span<const scene_choice> scenes);
+/// Removes measures.csv, if it exists, since a new run may have other scenes.
+void remove_measures(const std::filesystem::path& folder);
+
+/// Reads the scenes of an experiment from its results folder. Their measures are those of measures.csv; in results of
+/// earlier versions, which have no such file, each scene is generated again.
+/// @throws aabb::input_error if measures.csv lacks a scene.
 [[nodiscard]] std::vector<atlas_scene> read_atlas(const std::filesystem::path& folder, bool is_held_out);
+
+/// Writes a table of the times from which all others follow: a row per exact, timed repeat in these results folders.
+void write_times(const std::filesystem::path& file, std::span<const std::filesystem::path> folders);
 
 /// The numbers of scenes in which each composition or engine is the fastest, one row each.
 [[nodiscard]] table winners_table(const std::vector<atlas_scene>& atlas);
@@ -141,7 +151,8 @@ struct judged_ratio {
 /// A published statement about broad phases.
 struct statement_text {
     std::string id;
-    std::string source;    ///< author, year, section or file
+    std::string source;    ///< author, year, title, section or file
+    std::string link;      ///< empty if none is known
     std::string quote;     ///< at most a line of it
     std::string says;      ///< as it is judged
     std::string played;    ///< what stands for the algorithms of the source
@@ -171,6 +182,23 @@ void write_atlas(const std::filesystem::path& folder, const std::vector<atlas_sc
 
 // Shared by the units of the module.
 namespace aabblab {
+
+/// The name of an engine, or the strategies of a composition other than `none`.
+[[nodiscard]] std::string label_of(candidate_name name);
+/// Whether a row counts: exact, with times per frame and of all frames above 0.
+[[nodiscard]] bool is_timed(const row& r);
+
+/// The measures of a measures.csv.
+struct recorded_measures {
+    std::filesystem::path file;
+    std::map<std::string, scene_measures> by_scene;  ///< by kind, parameters and seed
+
+    /// @throws aabb::input_error if the file lacks the scene.
+    [[nodiscard]] const scene_measures& of(const scene_choice& scene) const;
+};
+/// Empty if there is no file.
+/// @throws aabb::input_error with file and line if it is malformed.
+[[nodiscard]] std::optional<recorded_measures> read_measures(const std::filesystem::path& folder);
 
 using scene_filter = std::function<bool(const atlas_scene&)>;
 

@@ -74,12 +74,13 @@ std::string verdict_text(const judged_statement& s) {
 
 /// One row per published statement: its source, what was played, its verdict and the ratios that decide it.
 table statements_table(const std::vector<judged_statement>& judged) {
-    table t = empty_table({"statement", "source", "quote", "says", "played", "verdict", "ratios"});
+    table t = empty_table({"statement", "source", "link", "quote", "says", "played", "verdict", "ratios"});
     for (const judged_statement& s : judged) {
         std::string ratios;
         for (const judged_ratio& r : s.ratios) ratios += (ratios.empty() ? "" : ", ") + fmt::format("{:.3g}", r.ratio);
         const statement_text& text = s.text;
-        t.rows.push_back({text.id, text.source, text.quote, text.says, text.played, verdict_text(s), ratios});
+        t.rows.push_back(
+            {text.id, text.source, text.link, text.quote, text.says, text.played, verdict_text(s), ratios});
     }
     return t;
 }

@@ -23,6 +23,7 @@ struct atlas_request {
 };
 
 struct measured_results {
+    std::filesystem::path folder;  ///< of the experiments
     std::vector<atlas_scene> scenes;
     std::vector<border_law> laws;
 };
@@ -35,7 +36,7 @@ measured_results existing_atlas(const results_source& source) {
     if (atlas.empty()) atlas = measured_atlas(parts = folder_of_atlas(source.folder));
     if (atlas.empty()) throw aabb::input_error("there are no results of an atlas in " + source.name);
     for (const std::string& missing : unfinished_parts(parts)) note(missing);
-    return {std::move(atlas), measured_laws(parts)};
+    return {parts, std::move(atlas), measured_laws(parts)};
 }
 
 /// Measures the atlas, or with --judge reads results, writes its maps, and prints which candidate is the fastest where.
@@ -59,6 +60,7 @@ int run(const atlas_request& request) {
     });
     const std::vector<atlas_scene>& atlas = measured.scenes;
     write_atlas(out, atlas, measured.laws);
+    write_times_of_atlas(out, measured.folder);
     print_paragraph(
         "How often each candidate is the fastest, by processor time per frame after the first; shown in: scenes where "
         "the second is slower beyond noise; as fast in: scenes where another is faster, but not beyond noise");

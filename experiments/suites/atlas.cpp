@@ -29,6 +29,14 @@ std::vector<std::string> names_of_parts() {
 
 }  // namespace
 
+std::vector<std::string> measure_part_of_atlas(const experiment& e, const std::filesystem::path& folder) {
+    remove_measures(folder);
+    std::vector<std::string> failures =
+        run_experiment(e, folder, existing_results::replace, "the same command", printed::nothing);
+    write_measures(folder, e.scenes);
+    return failures;
+}
+
 /// Runs the experiments of the atlas. All configs are read first, so that an invalid one is reported early.
 /// @param quick applies the settings of the configs for a short trial run
 /// @returns a sentence for each candidate with wrong results
@@ -40,11 +48,16 @@ std::vector<std::string> measure_atlas(const std::filesystem::path& folder, bool
     for (const experiment& e : experiments) {
         note(fmt::format("part {} of {} of the atlas: {}, {} scenes", &e - experiments.data() + 1, experiments.size(),
                          e.name, e.scenes.size()));
-        std::vector<std::string> wrong =
-            run_experiment(e, folder / e.name, existing_results::replace, "the same command", printed::nothing);
-        std::ranges::move(wrong, std::back_inserter(failures));
+        std::ranges::move(measure_part_of_atlas(e, folder / e.name), std::back_inserter(failures));
     }
     return failures;
+}
+
+void write_times_of_atlas(const std::filesystem::path& out, const std::filesystem::path& folder) {
+    std::vector<std::filesystem::path> parts;
+    for (const std::string& name : names_of_parts())
+        if (std::filesystem::exists(folder / name / "results.csv")) parts.push_back(folder / name);
+    write_times(out / "times.csv", parts);
 }
 
 /// A sentence for each experiment of the atlas whose results are missing or incomplete.

@@ -48,9 +48,15 @@ enum class printed { tables, tables_and_counts, nothing };
 /// @returns a sentence for each composition with wrong results, and for each test with wrong hits
 std::vector<std::string> measure_study(const error_study& study, const std::filesystem::path& folder, printed shown);
 
+/// Runs an experiment of an atlas, and records the measures of its scenes beside its rows.
+/// @returns a sentence for each composition with wrong results
+[[nodiscard]] std::vector<std::string> measure_part_of_atlas(const experiment& e, const std::filesystem::path& folder);
 /// Runs the experiments of an atlas in sub-folders; resumes existing results of the same build and size.
 /// @returns a sentence for each composition with wrong results
 [[nodiscard]] std::vector<std::string> measure_atlas(const std::filesystem::path& folder, bool quick);
+
+/// Writes times.csv to `out`: every time of the experiments in the folder.
+void write_times_of_atlas(const std::filesystem::path& out, const std::filesystem::path& folder);
 
 /// A sentence for each experiment with missing results.
 [[nodiscard]] std::vector<std::string> unfinished_parts(const std::filesystem::path& folder);

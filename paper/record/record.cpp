@@ -34,7 +34,7 @@ std::vector<std::filesystem::path> recorded_files(const std::filesystem::path& f
     for (const std::string& name : names_in(folder / "c6"))
         if (name.ends_with(".json") || name == "made_by.txt") add("c6", {name.c_str()});
     for (const std::string& name : names_in(folder / "atlas"))
-        add("atlas/" + name, {"manifest.json", "results.csv", "differences.csv"});
+        add("atlas/" + name, {"manifest.json", "measures.csv", "results.csv", "differences.csv"});
     for (const std::string suite : {"extreme", "stiff"}) {
         // Earlier versions sealed their report instead of rows.
         const bool has_report = std::filesystem::exists(folder / suite / "report.json");

@@ -299,6 +299,7 @@ TEST_CASE("Each statement has a source, a quote of at most a line, and what is p
         CAPTURE(s.text.id);
         CHECK(ids.insert(s.text.id).second);
         CHECK(!s.text.source.empty());
+        CHECK((s.text.link.empty() || s.text.link.starts_with("http")));
         CHECK_BETWEEN(std::size_t{20}, s.text.quote.size(), std::size_t{100});
         CHECK(!s.text.says.empty());
         CHECK(!s.text.played.empty());
@@ -307,7 +308,7 @@ TEST_CASE("Each statement has a source, a quote of at most a line, and what is p
     const aabblab::table table = aabblab::statements_table(statements);
     REQUIRE(table.rows.size() == 17);
     CHECK(table.rows[0].size() == table.columns.size());
-    CHECK(table.rows[0][5] == "undecided (proxy)");
+    CHECK(table.rows[0][6] == "undecided (proxy)");
 }
 
 TEST_CASE("A statement is decided by its own ratios, and undecided without them") {
@@ -366,6 +367,52 @@ TEST_CASE("The config of the atlas runs every candidate that a statement names")
     }
 }
 
+TEST_CASE_METHOD(in_folder, "An atlas takes the measures of its scenes from measures.csv, or makes the scenes again") {
+    // The last scene has a single frame and no seed.
+    std::string rows;
+    for (int i = 0; i < 300; ++i) rows += std::to_string(i % 20) + ",0," + std::to_string(i / 20) + ",30,1,30\n";
+    const std::string boxes = folder.write("boxes.csv", rows);
+    folder.write("small.toml",
+                 "name = \"atlas\"\n[[scene]]\nkind = \"cloud\"\nobjects = 500\ndisplacement = [0.1, 1]\nframes = 3\n"
+                 "[[scene]]\nkind = \"recording\"\nfile = \"" +
+                     boxes + "\"\n[[compose]]\nsort = \"std\"\n");
+    const std::string results = folder / "map/atlas";
+    run_well({"run", folder / "small.toml", "--out", results});
+    const auto read = [&] { return aabblab::read_atlas(results, /*is_held_out=*/false); };
+    const std::vector<atlas_scene> of_scenes = read();
+    REQUIRE(of_scenes.size() == 3);
+    std::vector<aabblab::scene_choice> scenes;
+    for (const atlas_scene& scene : of_scenes) scenes.push_back(scene.scene);
+    aabblab::write_measures(results, scenes);
+    const std::vector<atlas_scene> of_file = read();
+    CHECK(cells_table(of_file).rows == cells_table(of_scenes).rows);
+    for (std::size_t i = 0; i < scenes.size(); ++i) {
+        const aabblab::scene_measures& m = of_file[i].measures;
+        const aabblab::scene_measures& expected = of_scenes[i].measures;
+        CHECK(m.objects == expected.objects);
+        CHECK(m.pairs_per_object == expected.pairs_per_object);
+        CHECK(m.clustering == expected.clustering);
+        CHECK(m.boxes.size_ratio == expected.boxes.size_ratio);
+        CHECK(m.motion.has_value() == (i < 2));
+        CHECK(m.motion.has_value() == expected.motion.has_value());
+        if (m.motion) {
+            CHECK(m.motion->inversions == expected.motion->inversions);
+            CHECK(m.motion->at_rest == expected.motion->at_rest);
+        }
+    }
+    const std::string table = bytes_of_file(folder / "map/atlas/measures.csv");
+    std::vector<std::string> lines = lines_of(table);
+    lines[1] = lines[1].substr(0, lines[1].rfind(',')) + ",7";
+    folder.write("map/atlas/measures.csv", lines[0] + "\n" + lines[1] + "\n" + lines[2] + "\n" + lines[3] + "\n");
+    CHECK(read()[0].measures.motion->inversions == 7);
+    folder.write("map/atlas/measures.csv", lines[0] + "\n" + lines[1] + "\n" + lines[3] + "\n");
+    CHECK(holds(run_refused({"atlas", "--judge", "--out", folder / "map"}).err,
+                "map/atlas/measures.csv has no row for cloud objects=500"));
+    folder.write("map/atlas/measures.csv", "scene\n");
+    CHECK(holds(run_refused({"atlas", "--judge", "--out", folder / "map"}).err,
+                "measures.csv:1: these are not the columns"));
+}
+
 TEST_CASE_METHOD(in_folder, "atlas --judge draws maps from existing results and reports missing ones") {
     const program_result missing = run_program({"atlas", "--judge", "--out", folder / "none"});
     CHECK(missing.status == 2);
@@ -402,6 +449,18 @@ TEST_CASE_METHOD(in_folder, "atlas --judge draws maps from existing results and 
             for (const auto time : {atlas_time::per_frame, atlas_time::whole_run})
                 for (const double ms : candidate.times(time)) in_atlas += ms;
     CHECK(std::abs(in_atlas / in_rows - 1) < 1e-9);
+    // times.csv has those of every part.
+    const std::vector<std::string> times = lines_of(bytes_of_file(folder / "map/times.csv"));
+    CHECK(times[0] == "experiment,scene,scene_parameters,seed,frames,candidate,repeat,first_cpu_ms,later_cpu_ms");
+    double in_times = 0;
+    for (const std::string& line : times) {
+        if (!line.starts_with("atlas,")) continue;
+        const std::size_t later = line.rfind(','), first = line.rfind(',', later - 1);
+        in_times += std::stod(line.substr(first + 1)) + std::stod(line.substr(later + 1)) * (1 + 1.0 / 3);
+    }
+    CHECK(std::abs(in_times / in_rows - 1) < 1e-9);
+    for (const char* part : {"list_borders,", "list_borders_unseen,"})
+        CHECK(std::ranges::any_of(times, [&](const std::string& line) { return line.starts_with(part); }));
     for (const std::string& line :
          lines_of(mapped.out.substr(mapped.out.find("neighbour_list + bucket + columns + simd is")))) {
         INFO(line);
