@@ -66,9 +66,9 @@ public:
         const bool positive_y = std::ranges::all_of(plotted_, [](const plotted_composition& c) { return c.at.y > 0; });
         const std::optional<double> floor = floor_of_errors();
         figure f{.name = name,
-                 .caption = fmt::format("{} over {} in {}: each method over its parameter, whose value is at each "
+                 .caption = fmt::format("In {}, {} over {}: each method over its parameter, whose value is at each "
                                         "point. Bars are 95 % intervals of times.",
-                                        y_.name, x_.name, title()),
+                                        title(), quantity_of(y_), quantity_of(x_)),
                  .x = {label_of(x_), positive_x},
                  .y = {label_of(y_), positive_y || floor},
                  .lines = curves_};
@@ -104,6 +104,11 @@ public:
 private:
     [[nodiscard]] static std::string label_of(const metric& m) {
         return m.name + (m.unit.empty() ? "" : " (" + m.unit + ")");
+    }
+
+    /// A metric in words: its summary up to a colon or semicolon, after which details follow.
+    [[nodiscard]] static std::string quantity_of(const metric& m) {
+        return m.summary.substr(0, m.summary.find_first_of(":;"));
     }
 
     /// Adds a point to its curve; one that did not run in this scene is named in the caption.

@@ -170,6 +170,28 @@ std::string grids_faster_text(const std::vector<condition>& conditions) {
         faster, scenes, least, greatest, most->first, most->second);
 }
 
+/// "1,000, 2,000 and 4,000"
+std::string listed(const std::set<std::uint64_t>& numbers) {
+    std::string text;
+    for (const std::uint64_t n : numbers)
+        text += (text.empty() ? "" : n == *numbers.rbegin() ? " and " : ", ") + grouped(n);
+    return text;
+}
+
+/// A sentence for each compared cell size that holds a whole scene, as one cell: it is no grid there.
+std::string single_cells_text(const std::vector<condition>& conditions) {
+    std::string text;
+    for (const auto& [size, scene] : slowest_before) {
+        std::set<std::uint64_t> objects;
+        for (const condition* c : matching(conditions, {{"scene", scene}}))
+            if (!is_grid(*c, size)) objects.insert(static_cast<std::uint64_t>(objects_of(*c)));
+        if (!objects.empty())
+            text += fmt::format("{}On {}, with {} objects, cells of {} edges are a single one, which is no grid.",
+                                text.empty() ? "" : " ", scene_text(scene), listed(objects), size);
+    }
+    return text;
+}
+
 }  // namespace
 
 /// Drafts C5a: for each cell size, the time with a better one over that with it, in a scene where it was slow in an
@@ -188,6 +210,7 @@ draft c5a_claim(const measurements& m) {
     c5a.claim.tables.push_back(
         {"c5_cells", "Time per frame (ms, medians) with every cell size.", times_table(conditions)});
     c5a.claim.figures = {cell_figure(by_objects(conditions))};
+    c5a.claim.remark = single_cells_text(conditions);
     return c5a;
 }
 

@@ -63,6 +63,7 @@ std::vector<std::string> time_elementary_tests(const std::filesystem::path& fold
              "--benchmark_enable_random_interleaving=true", "--benchmark_repetitions=" + repetitions},
             log);
         if (ended.status != 0) return {"an elementary test of c6 is wrong; see " + log.string()};
+        write_file(part, without_path_of_program(text_of_file(part)));
         std::filesystem::rename(part, file_of(process));
     }
     return {};
@@ -370,6 +371,13 @@ void archive_reproduction(const std::filesystem::path& folder, const std::filesy
 }
 
 }  // namespace
+
+std::string without_path_of_program(std::string times) {
+    const std::size_t key = times.find("\"executable\":");
+    if (key == std::string::npos) return times;
+    const std::size_t begin = times.rfind('\n', key) + 1;
+    return times.erase(begin, times.find('\n', key) + 1 - begin);
+}
 
 /// Measures, unless existing results are to be judged, and reports; the folder is locked against a second run.
 int reproduce(const reproduce_request& request) {

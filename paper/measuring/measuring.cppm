@@ -20,4 +20,7 @@ struct reproduce_request {
 /// @throws aabb::input_error if results are missing, damaged or incompatible.
 [[nodiscard]] int reproduce(const reproduce_request& request);
 
+/// The output of Google Benchmark without the line that names the program with the folder where this machine has it.
+[[nodiscard]] std::string without_path_of_program(std::string times);
+
 }  // namespace aabblab

@@ -8,6 +8,7 @@
 import aabblab.archive;
 import aabblab.claims;
 import aabblab.errors;
+import aabblab.measuring;
 import aabblab.record;
 
 namespace {
@@ -187,6 +188,14 @@ TEST_CASE("Studies are drawn from their rows, whatever the program's defaults ar
     aabblab::seal_record(folder / "today");
     CHECK(holds(run_refused(judge({folder / "today"}, folder / "judged")).err,
                 "has rows of bucket + columns + simd, which is on no curve of the study"));
+}
+
+TEST_CASE("Times of elementary tests do not say where the program is") {
+    const std::string context = "{\n  \"context\": {\n    \"host_name\": \"vm\",\n";
+    const std::string rest = "    \"num_cpus\": 2\n  }\n}\n";
+    CHECK(aabblab::without_path_of_program(context + "    \"executable\": \"/home/me/aabblab_benchmarks\",\n" + rest) ==
+          context + rest);
+    CHECK(aabblab::without_path_of_program(context + rest) == context + rest);
 }
 
 TEST_CASE_METHOD(in_folder, "Altered results are rejected in a sentence that names the file") {

@@ -391,6 +391,9 @@ TEST_CASE("A grid of one cell does not count as a grid") {
     REQUIRE(regret != others.end());
     CHECK(std::abs(regret->ratio - 1) < 0.01);
     CHECK_FALSE(holds(named(results, "C5b").sentence, "takes less time than the cut"));
+    CHECK(holds(named(results, "C5a").sentence,
+                " and 10,000 objects, cells of 64 edges are a single one, which is no grid."));
+    CHECK_FALSE(holds(named(results, "C5a").sentence, "cells of 32 edges are a single one"));
     for (const aabblab::figure_panel& panel : named(results, "C5a").figures.front().panels)
         for (const aabblab::series& s : panel.lines)
             CHECK(std::ranges::none_of(s.points, [](const aabblab::figure_point& p) { return p.x == 64; }));
