@@ -58,7 +58,11 @@ TEST_CASE("The archived run is intact, and README and an independent program agr
     CHECK(holds(bytes_of_file(root / "README.md"), table));
 
     const auto claims = std::ranges::count(table, '\n') - 2 + 1;  // without the table's head, and with SMB's claim
-    CHECK(recomputed(full_run, folder).ends_with(" of " + std::to_string(claims) + without_differences));
+    const std::string output = recomputed(full_run, folder);
+    CHECK(output.ends_with(" of " + std::to_string(claims) + without_differences));
+    // It has no measures of the scenes of its atlas.
+    CHECK(holds(output, "51 figures with "));
+    CHECK(holds(output, "recomputed; not recomputed: map_classic_inversions, map_inversions (there are no measures"));
 }
 
 TEST_CASE("The earlier run on another processor is intact, and an independent program agrees with its verdicts",
@@ -74,4 +78,14 @@ TEST_CASE("The earlier run on another processor is intact, and an independent pr
 
 TEST_CASE("The archived quick run is intact and is what quick runs are compared with") {
     judge_published("paper/archive/quick_run.tar.xz", temporary_folder());
+}
+
+TEST_CASE("Published regrets of the atlas follow from its published times, by an independent program") {
+    const std::filesystem::path results = root / "experiments/configs/atlas/results";
+    const program_result result =
+        run_command({"python3", (root / "tests/paper/recompute_regrets.py").string(), results.string()});
+    INFO(result.out + result.err);
+    CHECK(result.status == 0);
+    for (const char* table : {"regrets.csv", "regrets_whole.csv", "regrets_unseen.csv"})
+        CHECK(holds(result.out, std::string(table) + ": 35 candidates in "));
 }

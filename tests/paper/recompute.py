@@ -4,8 +4,8 @@
 recompute.py REPORT [ARCHIVE]: reads results.csv of every experiment and c6/process-N.json, from the folder REPORT or from
 an archive, computes every ratio that REPORT/endpoints.csv names with its interval, decides it by the rule of
 paper/claims/endpoints.toml, which also says which ratios decide which claim and how, and compares with what endpoints.csv
-and verdicts.csv say; then every figure, as recompute_figures.py does. Ends with 1 where a number differs in its third
-digit, or a verdict or a figure differs.
+and verdicts.csv say; then every figure, with recompute_figures.py, recompute_stiff.py and recompute_atlas.py. Ends with 1
+where a number differs in its third digit, or a verdict or a figure differs.
 """
 
 import csv
@@ -545,6 +545,24 @@ def verdict(rule, outcomes):
     return {("for",): "holds", ("no difference",): "no difference"}.get(tuple(found), "does not hold")
 
 
+def verdict_lines(claims, endpoints, primaries):
+    """The figure of all primary ratios, by claim and outcome."""
+    labels = {
+        "for": "for the claim",
+        "against": "against it",
+        "no difference": "no difference",
+        "undecided": "undecided",
+    }
+    lines = recompute_figures.Lines()
+    for x, claim in enumerate(claims):
+        for e in endpoints:
+            if any(e is primary for primary in primaries[claim]):
+                lines.add(labels[outcome(e)], [{"x": x, **e["limits"]}])
+    margin = math.exp(MARGIN)
+    lines.add("band of no difference", [{"y": 1, "low": 1 / margin, "high": margin}])
+    return lines
+
+
 def agree(a, b):
     """To three digits: by less than one unit of the third."""
     return a == b or abs(a - b) < 10 ** (math.floor(math.log10(max(abs(a), abs(b), 1e-300))) - 2)
@@ -566,9 +584,10 @@ def recompute(folder, results):
         value, error, degrees = estimate_of(results, e)
         reach = error * student_quantile(degrees) if error > 0 else 0
         e["p"] = tails((value, error, degrees))
-        for name, mine in (("ratio", value), ("low", value - reach), ("high", value + reach)):
-            if not agree(math.exp(mine), float(e[name])):
-                differs(f"{e['claim']} {e['where']}: {name} is {math.exp(mine):.4g}, not {e[name]}")
+        e["limits"] = {name: math.exp(value + by) for name, by in (("y", 0), ("low", -reach), ("high", reach))}
+        for name, mine in zip(("ratio", "low", "high"), e["limits"].values()):
+            if not agree(mine, float(e[name])):
+                differs(f"{e['claim']} {e['where']}: {name} is {mine:.4g}, not {e[name]}")
     # The roles of ratios and what they expect, from what was stated before the measurements.
     told = {row[0]: row[2] for row in verdicts}
     primaries = {}
@@ -608,7 +627,7 @@ def recompute(folder, results):
         if verdict(claim["verdict"], outcomes) != told[claim["id"]]:
             differs(f"{claim['id']}: {verdict(claim['verdict'], outcomes)}, not {told[claim['id']]}")
     claims = {e["claim"] for e in endpoints}
-    recompute_figures.check(folder, results, differs)
+    recompute_figures.check(folder, results, verdict_lines(list(told), endpoints, primaries), differs)
     print(f"{len(endpoints)} ratios of {len(claims)} claims recomputed, {differences} differences")
     return 1 if differences else 0
 

@@ -1,7 +1,8 @@
 """Recomputes the points of a reproduction's figures from its rows, without any code of the program that drew them.
 
-`check` compares each figure of the claims, which macros.tex lists, and of the studies of error against run time with
-figures/NAME.csv, point by point, and reports which other figures it does not recompute.
+`check` compares each figure of the claims, which macros.tex lists, of the studies of error against run time, of bodies in
+contact and of the small atlas with figures/NAME.csv, point by point, and reports which figures it does not recompute, and
+why.
 """
 
 import csv
@@ -24,6 +25,9 @@ from recompute import (
     numbers,
     student_quantile,
 )
+from recompute_atlas import atlas_figures
+from recompute_lines import Lines, differences_of, drawn
+from recompute_stiff import stiff_figures
 
 TRADITIONAL = {"sort": "insertion", "partition": "none", "sweep": "one_axis"}
 AXIAL_CUT = {"partition": "axial_cut:axes=2"}
@@ -32,14 +36,6 @@ IMPROVED = {**SHELL, **AXIAL_CUT}
 GAPS = ["ciura", "ciura_eight", "four_one", "tokuda", "shell"]
 SORTS = ["shell:gaps=" + gaps for gaps in ("ciura", "tokuda", "shell", "ciura_eight", "four_one")] + ["insertion"]
 FRONT = "Pareto front"
-
-
-class Lines(dict):
-    """The points of a figure by panel and series: dictionaries of x, y and, where they vary, limits."""
-
-    def add(self, series, points, panel=""):
-        if points:
-            self.setdefault((panel, series), []).extend(points)
 
 
 # Numbers of rows.
@@ -505,8 +501,6 @@ def curves_of(study):
     return points, [(plot["x"], plot["y"]) for plot in config["plot"]]
 
 
-# Metrics of plots, by which their figures are named.
-PLOTTED = ("wrong_share", "box_inflation", "missing", "detect_ms", "detect_cpu_ms", "node_visits")
 ERRORS = ("wrong_share", "missing", "invented", "box_inflation")
 
 
@@ -611,55 +605,32 @@ def error_figures(folder):
 # Comparison.
 
 
-def drawn(file):
-    """The points of figures/NAME.csv."""
-    lines = Lines()
-    with open(file, newline="", encoding="utf-8") as text:
-        for row in csv.DictReader(text):
-            lines.add(row["series"], [row], row.get("panel") or "")
-    return lines
+def figures_of_reports(folder):
+    """Those of suites of which earlier versions kept a report only, by name, and why they cannot be recomputed."""
+    reports = [folder / suite / "report.json" for suite in ("extreme", "stiff")]
+    return {
+        f["name"]: f"{file.parent.name}/report.json, of an earlier version, has no rows"
+        for file in reports
+        if file.exists()
+        for f in json.loads(file.read_text(encoding="utf-8"))["figures"]
+    }
 
 
-def same(mine, theirs):
-    return math.isclose(mine, float(theirs), rel_tol=1e-6, abs_tol=1e-12)
-
-
-def differences_of(name, mine, theirs):
-    """A sentence per series that differs."""
-    found = []
-    for key in dict.fromkeys([*mine, *theirs]):
-        where = f"{name}: {' '.join(filter(None, key))}"
-        if key not in mine or key not in theirs:
-            found.append(f"{where} is {'not ' if key in mine else 'only '}drawn")
-            continue
-        if len(mine[key]) != len(theirs[key]):
-            found.append(f"{where} has {len(mine[key])} points, not {len(theirs[key])}")
-            continue
-        for point, row in zip(mine[key], theirs[key]):
-            full = {"low": point["y"], "high": point["y"], **point}
-            if "x" in point and row.get("x_low"):
-                full = {"x_low": point["x"], "x_high": point["x"], **full}
-            elif full.get("x_low") == full.get("x_high"):  # the figure has no interval of any x
-                full.pop("x_low", None)
-                full.pop("x_high", None)
-            wrong = [f"{k} is {v:.6g}, not {row.get(k)}" for k, v in full.items() if not row.get(k) or not same(v, row[k])]
-            if wrong:
-                found.append(f"{where}: {', '.join(wrong)}")
-                break
-    return found
-
-
-def check(report, results, differs):
-    """Compares every figure that it recomputes, and calls `differs` with a sentence per difference."""
+def check(report, results, verdicts, differs):
+    """Compares every figure, of which `verdicts` is recomputed already; calls `differs` with a sentence per difference."""
     figures = report / "figures"
     of_claims = re.findall(r"^\\aabbset\{\w+\.figures\}\{(.*)\}$", (report / "macros.tex").read_text(), re.MULTILINE)
-    wanted = {}
+    wanted = {"verdicts": verdicts}
     for name in filter(None, ",".join(of_claims).split(",")):
         if name in CLAIM_FIGURES:
             wanted[name] = CLAIM_FIGURES[name](results)
         else:
             differs(f"{name} is a figure of a claim, and is not recomputed")
     wanted.update(error_figures(results.folder))
+    wanted.update(stiff_figures(results.folder / "stiff", differs))
+    of_atlas, without_rows = atlas_figures(results.folder / "atlas")
+    wanted.update(of_atlas)
+    without_rows.update(figures_of_reports(results.folder))
     points = 0
     for name, lines in wanted.items():
         if not (figures / f"{name}.csv").exists():
@@ -668,8 +639,10 @@ def check(report, results, differs):
         points += sum(map(len, lines.values()))
         for sentence in differences_of(name, lines, drawn(figures / f"{name}.csv")):
             differs(sentence)
-    others = sorted({file.stem for file in figures.glob("*.csv")} - set(wanted))
-    for name in others:
-        if name.startswith("errors_") or any(name.startswith(f"{y}_over_") for y in PLOTTED):
-            differs(f"{name} is drawn, but rows have no such figure")
-    print(f"{len(wanted)} figures with {points} points recomputed; not recomputed: {', '.join(others) or 'none'}")
+    for name in sorted({file.stem for file in figures.glob("*.csv")} - set(wanted) - set(without_rows)):
+        differs(f"{name} is drawn, but rows have no such figure")
+    reasons = {}
+    for name, why in sorted(without_rows.items()):
+        reasons.setdefault(why, []).append(name)
+    not_recomputed = "; ".join(f"{', '.join(names)} ({why})" for why, names in reasons.items()) or "none"
+    print(f"{len(wanted)} figures with {points} points recomputed; not recomputed: {not_recomputed}")
