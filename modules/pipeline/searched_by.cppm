@@ -76,10 +76,10 @@ public:
     explicit stage_search(std::unique_ptr<global_stage> stage) : stage_(std::move(stage)) {}
 
     [[nodiscard]] std::unique_ptr<scene_parts> divide(const mesh_scene& scene) { return stage_->divide(scene); }
-    void insert(std::uint32_t id) { stage_->insert(id); }
-    void remove(std::uint32_t id) { stage_->remove(id); }
-    void update(std::span<const box> boxes) { stage_->update(boxes); }
-    void search(std::vector<index_pair>& pairs) { stage_->search(pairs); }
+    inline void insert(std::uint32_t id) { stage_->insert(id); }
+    inline void remove(std::uint32_t id) { stage_->remove(id); }
+    inline void update(std::span<const box> boxes) { stage_->update(boxes); }
+    inline void search(std::vector<index_pair>& pairs) { stage_->search(pairs); }
     [[nodiscard]] work_counters counters() const { return stage_->counters(); }
 
     [[nodiscard]] friend std::vector<part_bytes> bytes_by_part(const stage_search& search) {
