@@ -20,9 +20,9 @@ struct stated_filter {
         const bool of_both_sets = (set[a] == 'a' && set[b] == 'b') || (set[a] == 'b' && set[b] == 'a');
         bool a_wants_b = false, b_wants_a = false;
         for (int bit = 0; bit < 32; ++bit) {
-            const std::uint32_t one = std::uint32_t{1} << bit;
-            a_wants_b = a_wants_b || ((mask[a] & one) != 0 && (group[b] & one) != 0);
-            b_wants_a = b_wants_a || ((mask[b] & one) != 0 && (group[a] & one) != 0);
+            const std::uint32_t one_group = std::uint32_t{1} << bit;
+            a_wants_b = a_wants_b || ((mask[a] & one_group) != 0 && (group[b] & one_group) != 0);
+            b_wants_a = b_wants_a || ((mask[b] & one_group) != 0 && (group[a] & one_group) != 0);
         }
         return a_wants_b && b_wants_a && (!any_set || of_both_sets) && !(rests[a] && rests[b]) &&
                !exceptions.contains({a, b}) && !exceptions.contains({b, a});
@@ -84,6 +84,7 @@ struct filtered_scene {
         std::vector<aabb::index_pair> pairs;
     };
     std::vector<frame> frames;
+    bool filter_changes = false;  ///< between frames
 };
 
 /// @param most_objects some scenes have as many, some few
@@ -92,15 +93,14 @@ inline filtered_scene make_filtered_scene(const std::string& kind, std::uint32_t
     std::mt19937 random(seed);
     const std::uint32_t n = seed < 3 ? seed : 3 + static_cast<std::uint32_t>(random() % (most_objects - 2));
     const std::uint32_t side = std::array{3U, 6U, 12U}[random() % 3];
-    const bool filter_changes = seed % 2 == 0;
+    filtered_scene scene{.frames = {}, .filter_changes = seed % 2 == 0};
     stated_filter filter(n);
     draw(filter, kind, random);
     std::vector<aabb::box> boxes = lattice_boxes(random, n, side);
     std::vector<bool> present(n, false);
-    filtered_scene scene;
     for (int f = 0; f < 12; ++f) {
         auto& frame = scene.frames.emplace_back();
-        if (f > 0 && filter_changes) draw(filter, kind, random, 8);
+        if (f > 0 && scene.filter_changes) draw(filter, kind, random, 8);
         for (std::uint32_t id = 0; id < n; ++id) {
             // What rests stays where it is, for the most part; nothing promises that.
             const bool stays = f > 0 && random() % (filter.rests[id] ? 64 : 4) != 0;
@@ -146,25 +146,35 @@ inline aabb::cost_model costs_for_indices() {
     return costs;
 }
 
-/// The first frame in which the stage does not find what is kept; -1 if it always does.
-inline int first_wrong_frame(std::unique_ptr<aabb::global_stage> search, const filtered_scene& scene,
-                             filter_usage* usage = nullptr) {
-    aabb::collision_filter filter;
-    const auto stage = filtered(std::move(search), filter);
+/// The first frame in which a search does not find what is kept; -1 if it always does.
+/// @param filter that of the search, which is told what the scene says
+/// @param after_frame called after each frame
+template <class Search, class Call>
+int first_wrong_frame(Search& search, aabb::collision_filter& filter, const filtered_scene& scene, Call after_frame) {
     std::vector<bool> present;
     bool any_yet = false;  // before the first object comes there are no boxes
     for (std::size_t f = 0; f < scene.frames.size(); ++f) {
         const filtered_scene::frame& frame = scene.frames[f];
-        frame.filter.tell(filter);
+        if (f == 0 || scene.filter_changes) frame.filter.tell(filter);
         present.resize(frame.boxes.size());
         for (const std::uint32_t id : frame.toggled) {
-            present[id] ? stage->remove(id) : stage->insert(id);
+            present[id] ? search.remove(id) : search.insert(id);
             present[id] = !present[id];
         }
         any_yet |= !frame.toggled.empty();
         const auto boxes = std::span(frame.boxes).first(any_yet ? frame.boxes.size() : 0);
-        if (found_by(*stage, boxes) != frame.pairs) return static_cast<int>(f);
-        if (usage) usage->add(*stage);
+        if (found_by(search, boxes) != frame.pairs) return static_cast<int>(f);
+        after_frame();
     }
     return -1;
+}
+
+/// The same of a stage behind a filter.
+inline int first_wrong_frame(std::unique_ptr<aabb::global_stage> search, const filtered_scene& scene,
+                             filter_usage* usage = nullptr) {
+    aabb::collision_filter filter;
+    const auto stage = filtered(std::move(search), filter);
+    return first_wrong_frame(*stage, filter, scene, [&] {
+        if (usage) usage->add(*stage);
+    });
 }
