@@ -98,9 +98,10 @@ inline constexpr std::size_t most_shown = 10;
                                        const std::optional<nearness>& within = {});
 
 /// Checks a list of contacts, or of triangles that are near each other, in every frame of a scene of meshes.
+/// @param touching whether those count that only touch, in a point or along a segment
 /// @throws aabb::input_error likewise, and if the objects have 2^32 - 1 triangles or more in all.
 [[nodiscard]] check_result check_contacts(scene_frames& scene, const contact_list& list,
-                                          const std::optional<nearness>& within = {});
+                                          const std::optional<nearness>& within = {}, bool touching = true);
 
 /// The meshes and poses of `check_triangles`, as for `search_meshes`.
 struct mesh_check {
@@ -109,6 +110,7 @@ struct mesh_check {
     given_poses poses_b = {{aabb::pose{}}, {}, {}};
     std::optional<self_pairs> self = {};
     std::optional<nearness> within = {};
+    bool touching = true;      ///< whether pairs count that only touch
     std::string between = {};  ///< for messages
 };
 /// Checks a list of intersecting triangles of two meshes, in every pose, or of one mesh with itself.

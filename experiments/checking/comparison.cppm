@@ -35,6 +35,8 @@ public:
     /// Compares a frame; all frames must be compared in order.
     /// @param truth sorted, without repetitions; with a < b if symmetric
     void compare(std::span<const aabb::index_pair> truth, const observer& on_errors);
+    /// Whether the frames so far are right.
+    [[nodiscard]] bool is_right() const { return result_.is_right(); }
     /// The result, after the last frame; without classes.
     /// @param common what wrong pairs have in common, reported unless a reason explains the whole list
     [[nodiscard]] check_result result(std::vector<std::string> common) const;

@@ -54,16 +54,69 @@ private:
     std::vector<std::uint32_t> begins_;  // of each object, and their end
 };
 
-pair_list numbered(const contact_list& list, const numbered_triangles& numbers) {
+/// From where ids in a list count: those of scenes count from 0.
+struct id_origin {
+    std::uint32_t object = 0, triangle = 0;
+
+    /// Whether no id is less.
+    [[nodiscard]] bool is_possible(const contact_list& list) const {
+        return std::ranges::all_of(list.rows, [this](const listed_contact& row) {
+            const aabb::contact& c = row.contact;
+            return std::min(c.a, c.b) >= object && std::min(c.triangle_a, c.triangle_b) >= triangle;
+        });
+    }
+    [[nodiscard]] std::string sentence() const {
+        return fmt::format("{} count from 1: with 1 taken from each of their ids, the list is right.",
+                           object == 0     ? "Triangles"
+                           : triangle == 0 ? "Objects"
+                                           : "Objects and triangles");
+    }
+};
+
+pair_list numbered(const contact_list& list, const numbered_triangles& numbers, const id_origin& origin = {}) {
     pair_list pairs{.rows = {}, .has_frames = list.has_frames};
     pairs.rows.reserve(list.rows.size());
-    for (const listed_contact& row : list.rows) pairs.rows.push_back({row.frame, numbers.pair_of_row(row.contact)});
+    for (const auto& [frame, c] : list.rows)
+        pairs.rows.push_back({frame, numbers.pair_of_row({.a = c.a - origin.object,
+                                                          .b = c.b - origin.object,
+                                                          .triangle_a = c.triangle_a - origin.triangle,
+                                                          .triangle_b = c.triangle_b - origin.triangle})});
     return pairs;
 }
 
+/// Tests whether a list is right if its ids count from 1.
+class origin_tests {
+public:
+    origin_tests(const contact_list& list, const numbered_triangles& numbers, const list_extent& extent) {
+        for (const id_origin origin : {id_origin{1, 0}, id_origin{0, 1}, id_origin{1, 1}})
+            if (origin.is_possible(list))
+                tests_.push_back(std::make_unique<test>(origin, numbered(list, numbers, origin), extent));
+    }
+
+    /// Tests a frame; all frames must be tested in order.
+    void compare(std::span<const aabb::index_pair> truth) {
+        for (const auto& tested : tests_) tested->comparison.compare(truth, [](const frame_errors&) {});
+        std::erase_if(tests_, [](const auto& tested) { return !tested->comparison.is_right(); });
+    }
+    /// A sentence about where the ids count from that make the list right; empty if there are none.
+    [[nodiscard]] std::string sentence() const { return tests_.empty() ? "" : tests_.front()->origin.sentence(); }
+
+private:
+    struct test {
+        test(const id_origin& of, pair_list numbered, const list_extent& extent)
+            : origin(of), list(std::move(numbered)), comparison(list, extent) {}
+
+        id_origin origin;
+        pair_list list;
+        list_comparison comparison;
+    };
+    std::vector<std::unique_ptr<test>> tests_;  // those that hold so far
+};
+
 }  // namespace
 
-check_result check_contacts(scene_frames& scene, const contact_list& list, const std::optional<nearness>& within) {
+check_result check_contacts(scene_frames& scene, const contact_list& list, const std::optional<nearness>& within,
+                            bool touching) {
     if (!list.has_frames && scene.frames() > 1)
         throw aabb::input_error(
             fmt::format("the list has no frames, but the motion has {}: expected the columns "
@@ -80,21 +133,32 @@ check_result check_contacts(scene_frames& scene, const contact_list& list, const
     const wall_stopwatch preparing;
     const aabb::mesh_scene& meshes = *scene.meshes();
     const numbered_triangles numbers(meshes);
-    list_comparison comparison(numbered(list, numbers),
-                               {scene.frames(), numbers.size(), numbers.size(), /*is_symmetric=*/true});
+    const pair_list numbered_list = numbered(list, numbers);
+    const list_extent extent{scene.frames(), numbers.size(), numbers.size(), /*is_symmetric=*/true};
+    list_comparison comparison(numbered_list, extent);
+    origin_tests origins(list, numbers, extent);
     double check_ms = preparing.ms();
-    triangle_classes classes(within);
+    triangle_classes classes(within, touching);
     std::vector<aabb::index_pair> truth;
     progress shown("frames checked", scene.frames());
     const auto placed = [&](std::uint32_t object) {
         return posed_surface{meshes.meshes[meshes.mesh_of[object]], scene.poses()[object],
                              fmt::format("object {}, triangle", object)};
     };
+    const auto is_wanted = [&](const aabb::contact& c) {
+        if (touching) return true;
+        const posed_surface a = placed(c.a), b = placed(c.b);
+        return hit_filter(touching).keeps(
+            hit_geometry(a.mesh, a.pose, b.mesh, b.pose).kind({c.triangle_a, c.triangle_b}));
+    };
     run_frames(scene, searcher, [&](const searched_frame& frame) {
         search_ms += frame.ms();
-        const wall_stopwatch checking;
+        const wall_stopwatch selecting;
         truth.clear();
-        for (const aabb::contact& c : frame.contacts) truth.push_back(numbers.pair_of(c));
+        for (const aabb::contact& c : frame.contacts)
+            if (is_wanted(c)) truth.push_back(numbers.pair_of(c));
+        search_ms += touching ? 0 : selecting.ms();
+        const wall_stopwatch checking;
         sort_rows(truth);
         comparison.compare(truth, [&](const frame_errors& errors) {
             errors.each([&](aabb::index_pair pair, bool is_listed) {
@@ -111,10 +175,13 @@ check_result check_contacts(scene_frames& scene, const contact_list& list, const
                 return true;
             });
         });
+        origins.compare(truth);
         check_ms += checking.ms();
         shown.update(frame.number + 1);
     });
     check_result result = comparison.result({});
+    if (const std::string sentence = origins.sentence(); !result.is_right() && !sentence.empty())
+        result.patterns = {sentence};
     classes.add_to(result);
     result.search_ms = search_ms;
     result.check_ms = check_ms - classes.ms();

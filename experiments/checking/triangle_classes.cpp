@@ -27,7 +27,11 @@ std::string shape_of(const posed_surface& of, std::uint32_t id) {
 }
 
 /// An index into `difference_class_names`.
-std::size_t class_of(const wrong_pair& wrong, const posed_surface& a, const posed_surface& b) {
+/// @param touching whether pairs count that only touch; if not, a false positive that intersects is such a pair
+std::size_t class_of(const wrong_pair& wrong, const posed_surface& a, const posed_surface& b, bool touching) {
+    if (!touching && wrong.is_listed &&
+        hit_geometry(a.mesh, a.pose, b.mesh, b.pose).kind(wrong.pair) != aabb::intersection_kind::none)
+        return static_cast<std::size_t>(aabb::difference_class::touching);
     const std::span<const aabb::index_pair> pair(&wrong.pair, 1), none;
     const aabb::differences counts = aabb::compare_triangle_pairs(
         wrong.is_listed ? none : pair, wrong.is_listed ? pair : none, a.mesh, a.pose, b.mesh, b.pose);
@@ -47,7 +51,8 @@ std::optional<double> distance_of(const wrong_pair& wrong, const posed_surface& 
 
 }  // namespace
 
-triangle_classes::triangle_classes(const std::optional<nearness>& within) : within_(within) {
+triangle_classes::triangle_classes(const std::optional<nearness>& within, bool touching)
+    : within_(within), touching_(touching) {
     const auto add_names = [this](std::span<const std::string_view> names) {
         for (const std::string_view name : names) counts_.push_back({std::string(name)});
     };
@@ -79,7 +84,7 @@ void triangle_classes::add(wrong_pair wrong, const posed_surface& a, const posed
         count(distance == 0.0 ? 0 : wrong.is_listed ? 2 : 1, wrong);
         wrong.description = distance ? fmt::format("a distance of {:.6g}", *distance) : "a distance out of range";
     } else {
-        const std::size_t kind = class_of(wrong, a, b);
+        const std::size_t kind = class_of(wrong, a, b, touching_);
         count(kind, wrong);
         wrong.description = aabb::difference_class_names[kind];
     }

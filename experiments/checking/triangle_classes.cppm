@@ -17,7 +17,8 @@ struct posed_surface {
 class triangle_classes {
 public:
     /// @param within if the list is of triangles that are near each other
-    explicit triangle_classes(const std::optional<nearness>& within);
+    /// @param touching whether pairs count that only touch
+    triangle_classes(const std::optional<nearness>& within, bool touching);
 
     void add(wrong_pair wrong, const posed_surface& a, const posed_surface& b);
     /// Counts a contact of objects that the filter leaves out.
@@ -33,6 +34,7 @@ private:
     void show(wrong_pair wrong);
 
     std::optional<nearness> within_;
+    bool touching_;
     std::vector<class_counts> counts_;
     std::vector<wrong_pair> first_;
     std::uint64_t wrong_pairs_ = 0;

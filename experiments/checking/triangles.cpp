@@ -17,6 +17,7 @@ check_result check_triangles(const mesh_check& meshes, const pair_list& list) {
     // The ground truth of all poses, since the query passes each of them only once.
     std::vector<std::vector<aabb::index_pair>> truth(poses);
     const mesh_query query{.self = meshes.self,
+                           .hits = {.touching = meshes.touching},
                            .by_pose = poses > 1,
                            .between = meshes.between,
                            .take = [&](std::uint32_t pose, std::span<const aabb::index_pair> pairs) {
@@ -29,7 +30,7 @@ check_result check_triangles(const mesh_check& meshes, const pair_list& list) {
     const aabb::mesh& a = meshes.meshes.front();
     const aabb::mesh& b = meshes.meshes.back();
     list_comparison comparison(list, {poses, a.triangle_count(), b.triangle_count(), meshes.self.has_value()});
-    triangle_classes classes(meshes.within);
+    triangle_classes classes(meshes.within, meshes.touching);
     for (std::size_t pose = 0; pose < poses; ++pose) {
         const posed_surface placed_a{a, meshes.pose_a, meshes.self ? "triangle" : "A"};
         const posed_surface placed_b{b, meshes.self ? meshes.pose_a : meshes.poses_b.poses[pose],

@@ -21,7 +21,7 @@ struct check_request {
     std::optional<aabb::box_metric> metric;
     filter_files filter;
     std::string self;
-    bool swept = false, json = false;
+    bool touching = true, swept = false, json = false;
 
     [[nodiscard]] bool has_poses() const { return poses[0] || poses[1] || poses_of_b; }
 };
@@ -65,6 +65,11 @@ void reject_strange_options(const check_request& request, const std::vector<std:
     reject_if(request.within && is_self, "--within is about two meshes; omit --self");
     reject_if(request.metric && (!request.within || form != scene_form::recording),
               "--metric is the distance of boxes that --within D asks for");
+    reject_if(!request.touching && form == scene_form::recording, "--touching is about triangles, not about boxes");
+    reject_if(!request.touching && request.self == "all",
+              "--self=all is about triangles that touch; give --touching=no with plain --self");
+    reject_if(!request.touching && request.within,
+              "--within is about triangles that need not intersect; omit --touching");
     reject_if(request.swept && form != scene_form::recording, "--swept is about boxes, not about meshes");
     reject_if(request.filter.any() && form == scene_form::meshes,
               "--groups and --except are about several objects: boxes, or a motion file and its meshes");
@@ -104,7 +109,8 @@ void print_smallest(const check_request& request, const smallest_scene& smallest
     print(fmt::format(
         "\nSmallest scene, after {} runs: {} {} in {} frame{}. To repeat:\n  aabblab check {} --command '{}'{}\n",
         smallest.runs, smallest.objects, objects, smallest.frames, smallest.frames == 1 ? "" : "s", files,
-        *request.command, request.self.empty() ? "" : " --self"));
+        *request.command,
+        std::string(request.self.empty() ? "" : " --self") + (request.touching ? "" : " --touching=no")));
 }
 
 /// Runs the program a second time if its list is wrong.
@@ -162,7 +168,8 @@ int check_motion(const check_request& request, const std::vector<std::string>& s
     frames.filter_by(read_filter(request.filter, frames.objects()));
     std::optional<nearness> within;
     if (request.within) within = nearness{*request.within};
-    const check_result result = check_contacts(frames, read_contact_list(request.inputs.back()), within);
+    const check_result result =
+        check_contacts(frames, read_contact_list(request.inputs.back()), within, request.touching);
     return print_result(request, result, {.scene = scene[0], .list = request.inputs.back()});
 }
 
@@ -188,6 +195,7 @@ int check_meshes(const check_request& request, const std::vector<std::string>& s
     if (request.poses_of_b) meshes.poses_b = read_poses(*request.poses_of_b);
     if (!request.self.empty()) meshes.self = self_pairs_of(request.self);
     if (request.within) meshes.within = nearness{*request.within};
+    meshes.touching = request.touching;
     meshes.between = scene.front() + " against " + (scene.size() == 2 ? scene.back() : "itself");
     meshes.meshes = read_meshes(scene);
     const checked_list of{.scene = meshes.between,
@@ -237,6 +245,7 @@ void add_check(const command_parser& program) {
     command.option("--pose-a M", &request.poses[0], "Pose of A: twelve numbers, the rows of [R t]");
     command.option("--pose-b M", &request.poses[1], "Pose of B");
     command.option("--poses FILE", &request.poses_of_b, "Poses of B, one per line; the list has rows pose,a,b");
+    add_touching(command, &request.touching, "pairs of triangles");
     add_within(command, &request.within, "boxes or triangles");
     add_metric(command, &request.metric);
     command.flag("--swept", &request.swept, "Check pairs of swept boxes, as pairs --swept finds them");

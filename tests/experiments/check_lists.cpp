@@ -107,23 +107,73 @@ TEST_CASE_METHOD(in_folder, "check counts wrong contacts of moving meshes, and n
     check_narrow(text);
 }
 
+TEST_CASE_METHOD(in_folder, "check recognises contacts whose ids count from 1") {
+    const std::string motion = folder.write("motion.txt", three_objects);
+    const std::string mesh = folder.write("a.off", tetrahedron);
+    run_well({"contacts", motion, mesh, "--out", folder / "right.csv"});
+    const ids right = numbers_of(bytes_of_file(folder / "right.csv"));
+    const auto report = [&](std::uint32_t objects_from, std::uint32_t triangles_from) {
+        ids list = right;
+        for (auto& row : list)
+            for (std::size_t i = 1; i < 5; ++i) row[i] += i < 3 ? objects_from : triangles_from;
+        return checked({motion, mesh, folder.write("list.csv", text_of_ids(list))});
+    };
+    CHECK(report(0, 0)["right"] == true);
+    CHECK(holds(pattern_of(report(1, 0)),
+                "Objects count from 1: with 1 taken from each of their ids, the list is right."));
+    CHECK(holds(pattern_of(report(0, 1)), "Triangles count from 1: with 1 taken"));
+    CHECK(holds(pattern_of(report(1, 1)), "Objects and triangles count from 1: with 1 taken"));
+    for (const auto& pattern : report(2, 0)["patterns"]) CHECK_FALSE(holds(pattern.get<std::string>(), "from 1"));
+}
+
+TEST_CASE_METHOD(in_folder, "check takes lists without pairs that only touch") {
+    // Two tetrahedra that share a face touch in it, or cross if one is shifted along it.
+    const std::string mesh = folder.write("a.off", tetrahedron);
+    const std::string motion = folder.write("motion.txt",
+                                            "0 0  1 0 0 0 0 1 0 0 0 0 1 0\n0 1  1 0 0 1 0 1 0 0 0 0 1 0\n"
+                                            "1 1  1 0 0 0.25 0 1 0 0.25 0 0 1 0.125\n");
+    const std::vector<std::string> two{mesh, mesh, "--pose-b", "1,0,0,0.25,0,1,0,0.25,0,0,1,0"};
+    for (const auto& [command, scene] :
+         {std::pair<std::vector<std::string>, std::vector<std::string>>{{"contacts", motion, mesh}, {motion, mesh}},
+          {joined({"collide"}, two), two}}) {
+        CAPTURE(command);
+        const std::string full = folder / "full.csv", crossing = folder / "crossing.csv";
+        run_well(joined(command, {"--out", full}));
+        run_well(joined(command, {"--touching", "no", "--out", crossing}));
+        const std::size_t touching =
+            numbers_of(bytes_of_file(full)).size() - numbers_of(bytes_of_file(crossing)).size();
+        REQUIRE(touching > 0);
+        const auto report = [&](const std::string& list, const std::string& wanted) {
+            return checked(joined(scene, {list, "--touching", wanted}));
+        };
+        CHECK(report(full, "yes")["right"] == true);
+        CHECK(report(crossing, "no")["right"] == true);
+        CHECK(report(crossing, "no")["rows"] > 0);
+        CHECK(report(crossing, "yes")["false_negatives"] == touching);
+        const auto with_touching = report(full, "no");
+        CHECK(with_touching["false_positives"] == touching);
+        CHECK(with_touching["classes"]["touching"] == nlohmann::json::array({0, touching}));
+        CHECK(pattern_of(with_touching) == "All wrong pairs are of one class: touching.");
+    }
+}
+
 TEST_CASE_METHOD(in_folder, "check compares lists of what is within a distance, of boxes and of triangles") {
     const std::string scene = folder / "boxes.aabbs";
     write_four_cubes(scene);
     const auto report = [&](const std::string& text, const std::vector<std::string>& options) {
         return checked(joined({scene, folder.write("list.csv", text)}, options));
     };
-    const std::string all = "0 1\n0 2\n1 2\n";
-    CHECK(report(all, {"--within", "5"})["right"] == true);
-    CHECK(report(all, {"--within", "4.5", "--metric", "axis"})["right"] == true);
+    const std::string full = "0 1\n0 2\n1 2\n";
+    CHECK(report(full, {"--within", "5"})["right"] == true);
+    CHECK(report(full, {"--within", "4.5", "--metric", "axis"})["right"] == true);
     const auto open = report("0 1\n1 2\n", {"--within", "5"});
     CHECK(open["classes"]["at D, to 4 units in the last place"] == nlohmann::json::array({1, 0}));
     CHECK(open["first"][0]["description"] == "a distance of 5");
     CHECK(holds(pattern_of(open), "Every false negative is at the distance D"));
-    CHECK(holds(pattern_of(report(all, {"--within", "4.5"})), "the list is of --metric axis"));
+    CHECK(holds(pattern_of(report(full, {"--within", "4.5"})), "the list is of --metric axis"));
     CHECK(holds(pattern_of(report("0 1\n1 2\n", {"--within", "4.5", "--metric", "axis"})),
                 "as --metric euclidean has it"));
-    const auto far = report(all + "0 3\n", {"--within", "5"});
+    const auto far = report(full + "0 3\n", {"--within", "5"});
     CHECK(far["classes"]["farther than D"] == nlohmann::json::array({0, 1}));
     CHECK(far["patterns"].empty());
     CHECK(report("0 2\n1 2\n", {"--within", "5"})["classes"]["nearer than D"] == nlohmann::json::array({1, 0}));
@@ -266,6 +316,10 @@ TEST_CASE_METHOD(in_folder, "check rejects options that do not belong to the sce
          {{mesh, mesh, list, "--groups", "g.csv"}, "--groups and --except are about several objects"},
          {{mesh, mesh, mesh, list}, "expected a recording, two meshes, or a motion file and its meshes"},
          {{mesh, mesh, list, "--swept"}, "--swept is about boxes"},
+         {{scene.recording, list, "--touching", "no"}, "--touching is about triangles, not about boxes"},
+         {{mesh, mesh, list, "--within", "1", "--touching", "no"},
+          "triangles that need not intersect; omit --touching"},
+         {{mesh, list, "--self=all", "--touching", "no"}, "give --touching=no with plain --self"},
          {{motion, mesh, list, "--self"}, "a motion file has the poses of its meshes"},
          {{motion, mesh, "--command", "true"}, "not a motion"},
          {{scene.recording, "--command", "true", "--within", "1"}, "--command checks a list of all overlaps"},
