@@ -19,7 +19,7 @@ struct box_gap {
     int axis = 0;                                           ///< on which they overlap least, or have the greatest gap
     double gap = -std::numeric_limits<double>::infinity();  ///< on this axis; negative if they overlap
     double greatest = 0;                                    ///< coordinate on this axis, without its sign
-    int axes = 0;                                           ///< with a gap
+    unsigned axes = 0;                                      ///< with a gap, a bit each
     double distance = 0;                                    ///< Euclidean, rounded
 };
 
@@ -45,6 +45,10 @@ private:
     template <class Box>
     void count_false_positive(const Box& a, const Box& b);
     template <class Box>
+    void count_false_negatives(std::span<const aabb::index_pair> pairs, std::span<const Box> boxes);
+    template <class Box>
+    void count_false_positives(std::span<const aabb::index_pair> pairs, std::span<const Box> boxes);
+    template <class Box>
     void show(const frame_errors& errors, std::span<const Box> boxes);
     template <class Box>
     [[nodiscard]] std::string description(const Box& a, const Box& b) const;
@@ -62,12 +66,13 @@ private:
     std::vector<class_counts> counts_;
     std::vector<wrong_pair> first_;
     std::uint64_t false_negatives_ = 0, false_positives_ = 0, left_out_ = 0;
-    double greatest_gap_ = 0;           // of false positives
-    std::optional<int> untested_axis_;  // by false positives; -1 if there are several
-    bool only_touching_ = true;         // false negatives
-    bool only_near_ = true;             // touching, up to rounding
-    bool only_at_distance_ = true;      // false negatives: at D, up to rounding
-    bool is_of_floats_ = true;          // the scene is of doubles, and the list right for boxes rounded to float
+    double greatest_gap_ = 0;       // of false positives
+    unsigned all_gaps_ = 0;         // axes, a bit each, on which any false positive has a gap
+    unsigned common_gaps_ = 7;      // and those on which all have one
+    bool only_touching_ = true;     // false negatives
+    bool only_near_ = true;         // touching, up to rounding
+    bool only_at_distance_ = true;  // false negatives: at D, up to rounding
+    bool is_of_floats_ = true;      // the scene is of doubles, and the list right for boxes rounded to float
     bool is_of_other_metric_ = true;
     std::optional<std::vector<std::uint32_t>> common_;  // objects of all wrong pairs
 };

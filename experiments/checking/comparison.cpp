@@ -1,7 +1,6 @@
 module aabblab.checking;
 
 import :comparison;
-import :pair_sort;
 
 namespace aabblab {
 
@@ -11,44 +10,45 @@ std::uint64_t check_result::false_positives() const {
     return sum;
 }
 
-/// Orders the rows by frame, and sorts out those that no frame has.
+/// Finds the rows of each frame; they are ordered by frame first, unless the list is.
 list_comparison::list_comparison(const pair_list& list, const list_extent& of)
-    : of_(of), begins_(of.frames + 1), explanation_(of) {
-    const auto pair_of = [&](const listed_pair& row) {
-        return of.is_symmetric ? aabb::ordered_pair(row.pair.a, row.pair.b) : row.pair;
-    };
-    if (std::ranges::is_sorted(list.rows, {}, &listed_pair::frame)) {
+    : of_(of), list_(list.rows), begins_(of.frames + 1), explanation_(of) {
+    if (std::ranges::is_sorted(list_, {}, &listed_pair::frame)) {
         for (std::size_t frame = 0; frame < begins_.size(); ++frame)
-            begins_[frame] = static_cast<std::size_t>(
-                std::ranges::lower_bound(list.rows, frame, {}, &listed_pair::frame) - list.rows.begin());
-        pairs_.reserve(begins_.back());
-        for (const listed_pair& row : std::span(list.rows).first(begins_.back())) pairs_.push_back(pair_of(row));
+            begins_[frame] = static_cast<std::size_t>(std::ranges::lower_bound(list_, frame, {}, &listed_pair::frame) -
+                                                      list_.begin());
     } else {
-        for (const listed_pair& row : list.rows)
+        for (const listed_pair& row : list_)
             if (row.frame < of.frames) ++begins_[row.frame + 1];
         std::partial_sum(begins_.begin(), begins_.end(), begins_.begin());
-        pairs_.resize(begins_.back());
+        ordered_.resize(begins_.back());
         std::vector<std::size_t> next(begins_.begin(), begins_.end() - 1);
-        for (const listed_pair& row : list.rows)
-            if (row.frame < of.frames) pairs_[next[row.frame]++] = pair_of(row);
+        for (const listed_pair& row : list_)
+            if (row.frame < of.frames) ordered_[next[row.frame]++] = row;
+        list_ = ordered_;
     }
     result_.listed = list.rows.size();
-    result_.unknown_frames = list.rows.size() - pairs_.size();
+    result_.unknown_frames = list.rows.size() - begins_.back();
 }
 
 /// Whether sorted rows are pairs that the scene can have, each once.
 bool list_comparison::are_pairs(std::span<const aabb::index_pair> rows) const {
     bool holds = true;
-    for (std::size_t i = 0; i < rows.size(); ++i)
-        holds &= rows[i].a < of_.ids_a && rows[i].b < of_.ids_b && !(of_.is_symmetric && rows[i].a == rows[i].b) &&
-                 !(i > 0 && rows[i] == rows[i - 1]);
+    for (const auto [a, b] : rows)  // without branches, so that the loop is vectorised
+        holds &= (a < of_.ids_a) & (b < of_.ids_b) & ((a != b) | !of_.is_symmetric);
+    for (std::size_t i = 1; i < rows.size(); ++i) holds &= key_of(rows[i - 1]) != key_of(rows[i]);
     return holds;
 }
 
 /// Sorts the rows of the frame, and counts those that are not pairs of the scene, or repeat one.
 void list_comparison::take_frame() {
-    rows_ = std::span(pairs_).subspan(begins_[frame_], begins_[frame_ + 1] - begins_[frame_]);
-    if (!std::ranges::is_sorted(rows_)) sort_pairs(rows_, std::max(of_.ids_a, of_.ids_b));
+    const auto listed = list_.subspan(begins_[frame_], begins_[frame_ + 1] - begins_[frame_]);
+    rows_.resize(listed.size());
+    std::ranges::transform(listed, rows_.begin(), [is_symmetric = of_.is_symmetric](const listed_pair& row) {
+        const auto [a, b] = row.pair;
+        return is_symmetric ? aabb::index_pair{std::min(a, b), std::max(a, b)} : row.pair;
+    });
+    if (!std::ranges::is_sorted(rows_, {}, key_of)) sorter_.sort(rows_);
     listed_ = rows_;
     if (are_pairs(rows_)) return;
     accepted_.clear();
@@ -66,30 +66,34 @@ void list_comparison::take_frame() {
 }
 
 /// Compares two sorted lists.
-void list_comparison::find_errors(std::span<const aabb::index_pair> truth) {
-    false_negatives_.clear();
-    false_positives_.clear();
+/// @returns the wrong pairs, in buffers that only grow
+frame_errors list_comparison::find_errors(std::span<const aabb::index_pair> truth) {
+    if (false_negatives_.size() < truth.size()) false_negatives_.resize(truth.size());
+    if (false_positives_.size() < listed_.size()) false_positives_.resize(listed_.size());
     auto listed = listed_.begin();
+    auto false_negative = false_negatives_.begin();
+    auto false_positive = false_positives_.begin();
     for (const aabb::index_pair& pair : truth) {
-        for (; listed != listed_.end() && *listed < pair; ++listed) false_positives_.push_back(*listed);
+        for (; listed != listed_.end() && key_of(*listed) < key_of(pair); ++listed) *false_positive++ = *listed;
         if (listed != listed_.end() && *listed == pair)
             ++listed;
         else
-            false_negatives_.push_back(pair);
+            *false_negative++ = pair;
     }
-    false_positives_.insert(false_positives_.end(), listed, listed_.end());
+    false_positive = std::copy(listed, listed_.end(), false_positive);
+    return {frame_, {false_negatives_.begin(), false_negative}, {false_positives_.begin(), false_positive}};
 }
 
 void list_comparison::compare(std::span<const aabb::index_pair> truth, const observer& on_errors) {
     take_frame();
     result_.expected += truth.size();
     result_.correct += truth.size();
-    const bool is_wrong = !std::ranges::equal(listed_, truth);
+    const bool is_wrong = !are_equal(listed_, truth);
     if (is_wrong) {
-        find_errors(truth);
-        result_.correct -= false_negatives_.size();
-        result_.frames.push_back({frame_, false_negatives_.size(), false_positives_.size()});
-        on_errors({frame_, false_negatives_, false_positives_});
+        const frame_errors errors = find_errors(truth);
+        result_.correct -= errors.false_negatives.size();
+        result_.frames.push_back({frame_, errors.false_negatives.size(), errors.false_positives.size()});
+        on_errors(errors);
     }
     explanation_.add({.truth = truth, .rows = rows_, .listed = listed_, .is_wrong = is_wrong});
     ++frame_;

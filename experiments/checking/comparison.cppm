@@ -2,6 +2,7 @@
 module aabblab.checking:comparison;
 
 import :explanation;
+import :pair_order;
 import aabb.std;
 import aabblab.checking;
 
@@ -30,6 +31,7 @@ public:
     /// Receives the wrong pairs of each frame that has some.
     using observer = std::function<void(const frame_errors&)>;
 
+    /// @param list must outlive this object
     list_comparison(const pair_list& list, const list_extent& of);
 
     /// Compares a frame; all frames must be compared in order.
@@ -44,18 +46,20 @@ public:
 private:
     [[nodiscard]] bool are_pairs(std::span<const aabb::index_pair> rows) const;
     void take_frame();
-    void find_errors(std::span<const aabb::index_pair> truth);
+    [[nodiscard]] frame_errors find_errors(std::span<const aabb::index_pair> truth);
 
     list_extent of_;
-    std::vector<aabb::index_pair> pairs_;  // by frame, in the order of the list
-    std::vector<std::size_t> begins_;      // of each frame in `pairs_`, and their end
+    std::span<const listed_pair> list_;  // by frame, in the order of the list
+    std::vector<listed_pair> ordered_;   // these rows, if the list is in another order
+    std::vector<std::size_t> begins_;    // of each frame in `list_`, and their end
     check_result result_;
     list_explanation explanation_;
+    pair_sorter sorter_;
     std::uint32_t frame_ = 0;
-    std::span<aabb::index_pair> rows_;          // of this frame, sorted
-    std::span<const aabb::index_pair> listed_;  // of these, those that the scene can have, each once
-    std::vector<aabb::index_pair> accepted_;    // the same, if not all rows are
-    std::vector<aabb::index_pair> false_negatives_, false_positives_;  // of this frame
+    std::vector<aabb::index_pair> rows_;                               // of this frame, sorted
+    std::span<const aabb::index_pair> listed_;                         // those that the scene can have, each once
+    std::vector<aabb::index_pair> accepted_;                           // the same, if not all rows are
+    std::vector<aabb::index_pair> false_negatives_, false_positives_;  // begin with those of this frame
 };
 
 }  // namespace aabblab

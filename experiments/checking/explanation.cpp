@@ -1,7 +1,7 @@
 module aabblab.checking;
 
 import :explanation;
-import :pair_sort;
+import :pair_order;
 import aabblab.fmt;
 import aabblab.numbers;
 
@@ -27,9 +27,9 @@ bool are_moved(const compared_frame& frame, const list_extent& of, Moved moved) 
     std::vector<index_pair> pairs;
     pairs.reserve(frame.rows.size());
     for (const index_pair& row : frame.rows) pairs.push_back(pair_of(row));
-    sort_pairs(pairs, std::max(of.ids_a, of.ids_b));
+    pair_sorter().sort(pairs);
     pairs.erase(std::ranges::unique(pairs).begin(), pairs.end());
-    return std::ranges::equal(pairs, frame.truth);
+    return are_equal(pairs, frame.truth);
 }
 
 /// The same for rows with 1 taken from each id, which keeps their order.
@@ -130,15 +130,14 @@ void list_explanation::test_ids(const compared_frame& frame) {
 
 /// Tests whether the list is right in other frames.
 void list_explanation::test_order(const compared_frame& frame) {
-    is_early_ &= frame_ == 0 || std::ranges::equal(previous_list_, frame.truth);
+    is_early_ &= frame_ == 0 || are_equal(previous_list_, frame.truth);
     if (!frame.is_wrong) return;
     const auto test = [&](hypothesis& h, const auto& explains) {
         h.holds = h.holds && explains();
         h.frames += h.holds;
     };
-    test(late_, [&] { return frame_ == 0 ? frame.rows.empty() : std::ranges::equal(frame.listed, previous_truth_); });
-    test(constant_,
-         [&] { return frame_ > 0 && !frame.listed.empty() && std::ranges::equal(frame.listed, previous_list_); });
+    test(late_, [&] { return frame_ == 0 ? frame.rows.empty() : are_equal(frame.listed, previous_truth_); });
+    test(constant_, [&] { return frame_ > 0 && !frame.listed.empty() && are_equal(frame.listed, previous_list_); });
 }
 
 void list_explanation::add(const compared_frame& frame) {
@@ -153,8 +152,8 @@ void list_explanation::add(const compared_frame& frame) {
         if (!frame.truth.empty()) lacking_.push_back(frame_);
         lacking_pairs_ += frame.truth.size();
     }
-    previous_truth_.assign(frame.truth.begin(), frame.truth.end());
-    previous_list_.assign(frame.listed.begin(), frame.listed.end());
+    if (late_.holds) previous_truth_.assign(frame.truth.begin(), frame.truth.end());
+    if (is_early_ || constant_.holds) previous_list_.assign(frame.listed.begin(), frame.listed.end());
     ++frame_;
 }
 

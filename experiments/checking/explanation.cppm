@@ -48,7 +48,7 @@ private:
 
     list_extent of_;
     std::uint32_t frame_ = 0;
-    std::vector<aabb::index_pair> previous_truth_, previous_list_;
+    std::vector<aabb::index_pair> previous_truth_, previous_list_;  // as long as a hypothesis needs them
     hypothesis from_one_, from_minus_one_, reversed_, mirrored_, late_, constant_;
     bool is_early_ = true;
     /// Two objects whose ids may be exchanged from the first wrong frame on; empty before it.

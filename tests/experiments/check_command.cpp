@@ -92,6 +92,82 @@ TEST_CASE_METHOD(in_folder, "check finds every wrong pair of random lists, where
     }
 }
 
+TEST_CASE_METHOD(in_folder, "check counts long lists in any order, whatever ids they have") {
+    const checked_scene scene = scene_in(folder);
+    const std::set<std::array<std::int64_t, 3>> truth(scene.pairs.begin(), scene.pairs.end());
+    std::uint64_t state = 1;
+    const auto below = [&state](std::uint64_t most) {  // a linear congruential generator (Knuth)
+        state = state * 6364136223846793005U + 1442695040888963407U;
+        return static_cast<std::int64_t>((state >> 31U) % most);
+    };
+    // Most rows are of objects of the scene; ids of few bits and of all are sorted in different ways.
+    for (const std::uint64_t ids : {60ULL, 64ULL, 3'000ULL, 70'000ULL, 4'294'967'295ULL}) {
+        CAPTURE(ids);
+        rows list = scene.pairs;
+        for (int i = 0; i < 20'000; ++i) {
+            const auto id = [&] { return below(below(4) == 0 ? ids : 60); };
+            list.push_back({below(6), id(), id()});
+        }
+        std::uint64_t unknown = 0, self = 0;
+        std::set<std::array<std::int64_t, 3>> pairs;
+        for (const auto& [frame, a, b] : list) {
+            const bool is_known = a < 60 && b < 60;
+            unknown += !is_known;
+            self += is_known && a == b;
+            if (is_known && a != b) pairs.insert({frame, std::min(a, b), std::max(a, b)});
+        }
+        for (std::size_t i = list.size(); i > 1; --i) std::swap(list[i - 1], list[static_cast<std::size_t>(below(i))]);
+        if (ids == 64) std::ranges::sort(list, {}, [](const auto& row) { return row[0]; });  // by frame
+        const auto report = checked({scene.recording, folder.write("list.csv", text_of(list))});
+        CHECK(report["false_negatives"] == 0);
+        CHECK(report["false_positives"] == pairs.size() - truth.size());
+        CHECK(report["unknown_ids"] == unknown);
+        CHECK(report["self_pairs"] == self);
+        CHECK(report["duplicates"] == list.size() - unknown - self - pairs.size());
+        CHECK(report["first"][0]["b"] < 60);
+    }
+}
+
+TEST_CASE_METHOD(in_folder, "check classifies many wrong pairs as it does few") {
+    constexpr int n = 40;
+    std::string every_pair = "a,b\n";
+    for (int a = 0; a < n; ++a)
+        for (int b = a + 1; b < n; ++b) every_pair += std::to_string(a) + "," + std::to_string(b) + "\n";
+    folder.write("every_pair.csv", every_pair);
+    folder.write("no_pair.csv", "a,b\n");
+    for (const double unit : {0x1p-23, 0x1p-52})  // in the last place of 1 to 2; the scene is of floats, or of doubles
+        for (const bool has_far : {false, true}) {
+            CAPTURE(unit, has_far);
+            // Boxes that end, or begin, at 1 and up to 19 units; some of them are far away.
+            std::ostringstream boxes, others;
+            boxes.precision(17);
+            for (int i = 0; i < n; ++i) {
+                const double end = 1 + unit * (7 * (i / 2) % 20), y = has_far && i % 3 == 0 ? 1e6 : 0;
+                boxes << (i % 2 == 0 ? 0 : end) << ',' << y << ",0," << (i % 2 == 0 ? end : 1.5) << ',' << y + 1
+                      << ",1\n";
+            }
+            // Beside as many others that no row names, the same wrong pairs are few.
+            for (int i = 0; i < 8 * n * n; ++i) others << -2 - i << ",9,9," << -2 - i << ",9,9\n";
+            const auto report_on = [&](const std::string& scene, const std::string& list) {
+                return checked({folder.write("boxes.csv", scene), folder / list});
+            };
+            for (const std::string list : {"every_pair.csv", "no_pair.csv"}) {
+                CAPTURE(list);
+                const auto many = report_on(boxes.str(), list), few = report_on(boxes.str() + others.str(), list);
+                for (const char* part : {"false_negatives", "false_positives", "classes", "first", "patterns"})
+                    CHECK(many[part] == few[part]);
+                const bool is_empty = list == "no_pair.csv";
+                for (const char* near : {"within 1 unit in the last place", "within 4", "within 16", "beyond 16"})
+                    CHECK(many["classes"][near][is_empty ? 0 : 1] > 0);
+                CHECK((many["classes"]["touching"][0] > 0) == is_empty);
+                CHECK(holds(pattern_of(many), is_empty         ? "The list is empty"
+                                              : has_far        ? "No pair is missing"
+                                              : unit < 0x1p-23 ? "right for boxes rounded to float"
+                                                               : "x may not be tested"));
+            }
+        }
+}
+
 TEST_CASE_METHOD(in_folder, "check names what is wrong with a list as a whole") {
     const checked_scene scene = scene_in(folder);
     const auto pattern = [&](const std::function<void(rows&)>& damage) {
