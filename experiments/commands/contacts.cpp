@@ -50,13 +50,14 @@ std::string json_of(const contacts_request& request, const search_method& method
 std::string text_of(const contacts_request& request, const search_method& method, const frames_result& result) {
     return fmt::format("{}{}: {}, {}\n", visible(request.motion), filter_text(request.filter),
                        counted(result.objects, "object"), counted(result.ms.size(), "frame")) +
-           fmt::format("{} of triangles{} in {} of objects ({} of boxes), digest {}\n",
-                       counted(result.contacts, request.within ? "pair" : "contact"), text_of_within(request.within),
-                       counted(result.object_pairs, request.within ? "pair" : "contact"), counted(result.pairs, "pair"),
-                       result.digest) +
-           to_text(result.kinds) +
-           fmt::format("{}: built in {:.3f} ms,\n{:.3f} ms per frame (mean, with frame 0)\n", method.text(),
-                       result.build_ms, result.mean_ms());
+           wrapped(fmt::format("{} of triangles{} in {} of objects ({} of boxes), digest {}",
+                               counted(result.contacts, request.within ? "pair" : "contact"),
+                               text_of_within(request.within),
+                               counted(result.object_pairs, request.within ? "pair" : "contact"),
+                               counted(result.pairs, "pair"), result.digest)) +
+           "\n" + to_text(result.kinds) +
+           wrapped(fmt::format("{}: built in {:.3f} ms,", method.text(), result.build_ms)) +
+           fmt::format("\n{:.3f} ms per frame (mean, with frame 0)\n", result.mean_ms());
 }
 
 /// Opens the file of --draw, which must not overwrite an input or the contacts.
@@ -126,7 +127,8 @@ void add_contacts(const command_parser& program) {
         "Run both phases on moving meshes: find the intersecting triangles of each frame and pair of objects");
     auto& request = command.set_action(find_contacts);
     command.argument("MOTION", &request.motion,
-                     "Text file with lines of frame, object and 12 numbers, the rows of the pose [R t]");
+                     "Text file with lines of frame, object and pose: twelve numbers, the rows of [R t], or seven, tx, "
+                     "ty, tz and the quaternion x, y, z, w");
     command.argument(
         "MESH", &request.meshes,
         "Mesh files (OFF, OBJ, PLY, STL, glTF) or shapes; object i has mesh i modulo the number of meshes");

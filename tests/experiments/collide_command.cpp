@@ -239,7 +239,7 @@ TEST_CASE_METHOD(in_folder, "collide and contacts use the singular for a count o
     CHECK(holds(collided, "one.off (1 triangle) against "));
     CHECK(holds(collided, "\n1 intersecting pair of triangles, "));
     CHECK(holds(run_program({"contacts", motion, mesh}).out,
-                "\n1 contact of triangles in 1 contact of objects (1 pair of boxes), "));
+                "\n1 contact of triangles in 1 contact of objects (1 pair of boxes),"));
 }
 
 TEST_CASE_METHOD(two_files, "collide gives the same results for many poses in one call as in separate calls") {

@@ -44,7 +44,9 @@ TEST_CASE_METHOD(with_mesh_file, "contacts finds the same contacts in each frame
     CHECK(summary["digest"] == reference["digest"]);
     CHECK(summary["exact"] == true);
     CHECK(bytes_of_file(folder / "c.csv") == rows);
-    CHECK(holds(run_program({"contacts", motion, mesh}).out, "3 objects, 4 frames"));
+    const std::string text = run_program({"contacts", motion, mesh}).out;
+    CHECK(holds(text, "3 objects, 4 frames"));
+    check_narrow(text.substr(text.find('\n')));  // without the name of the file
     CHECK(json_of({"contacts", motion, mesh, "--json", "--triangle", "moller"})["exact"] == false);
     CHECK(holds(run_program({"contacts", motion, mesh, "--engine", "fcl"}).out, "fcl (inexact)"));
 }
