@@ -16,9 +16,22 @@ namespace aabblab {
 
 namespace {
 
+/// The parts with the bytes of all of the same name: a filter and a Verlet list are both `prepare`.
+std::vector<aabb::part_bytes> summed_by_name(const std::vector<aabb::part_bytes>& parts) {
+    std::vector<aabb::part_bytes> sums;
+    for (const aabb::part_bytes& part : parts) {
+        const auto same = std::ranges::find(sums, part.part, &aabb::part_bytes::part);
+        if (same == sums.end())
+            sums.push_back(part);
+        else
+            same->bytes += part.bytes;
+    }
+    return sums;
+}
+
 std::string text_of(std::string_view stage, const std::string& strategies, const std::vector<aabb::part_bytes>& parts) {
     std::string text = fmt::format("    {}{}{}\n", stage, strategies.empty() ? "" : ": ", strategies);
-    for (const aabb::part_bytes& part : parts)
+    for (const aabb::part_bytes& part : summed_by_name(parts))
         text += fmt::format("      {:<34}{:>14} bytes\n",
                             part.part == "projections" ? "set of objects, and lists if any" : part.part,
                             grouped(part.bytes));
