@@ -122,9 +122,9 @@ void time_distances(benchmark::State& state, const distance_peer& peer, const me
         wrong = 0;
         for (const aabb::pose& at : meshes.poses_of_b()) {
             const auto [exact, our_ms] = timed([&] { return ours.distance(of_a, {}, of_b, at); });
-            const auto [found, their_ms] = timed([&] { return theirs(at); });
+            const auto [their_distance, their_ms] = timed([&] { return theirs(at); });
             taken.add(our_ms, their_ms);
-            const double off = std::max(0.0, std::abs(found - exact.distance) - exact.error);
+            const double off = std::max(0.0, std::abs(their_distance - exact.distance) - exact.error);
             wrong += off > 1e-12 * meshes.size;
             worst = std::max(worst, off / meshes.size);
         }
@@ -155,9 +155,9 @@ void time_within(benchmark::State& state, const distance_peer& peer, const mesh_
             ours.add_model(meshes.b);
             static_cast<void>(ours.count_pairs(0, {}, 1, at));  // its buffers grow
             const auto [count, our_ms] = timed([&] { return ours.count_pairs(0, {}, 1, at); });
-            const auto [found, their_ms] = timed([&] { return theirs(at, d); });
-            if (found != count)
-                throw std::logic_error(peer.name + " finds " + std::to_string(found) +
+            const auto [their_count, their_ms] = timed([&] { return theirs(at, d); });
+            if (their_count != count)
+                throw std::logic_error(peer.name + " finds " + std::to_string(their_count) +
                                        " pairs within a distance, not " + std::to_string(count));
             taken.add(our_ms, their_ms);
             pairs += static_cast<double>(count);
@@ -169,17 +169,17 @@ void time_within(benchmark::State& state, const distance_peer& peer, const mesh_
 }
 
 std::vector<distance_peer> peers() {
-    std::vector<distance_peer> found;
+    std::vector<distance_peer> peers;
 #ifdef AABBLAB_PEER_FCL
-    found.push_back(fcl_distances());
+    peers.push_back(fcl_distances());
 #endif
 #ifdef AABBLAB_PEER_EMBREE
-    found.push_back(embree_distances());
+    peers.push_back(embree_distances());
 #endif
 #ifdef AABBLAB_PEER_CGAL
-    found.push_back(cgal_distances());
+    peers.push_back(cgal_distances());
 #endif
-    return found;
+    return peers;
 }
 
 }  // namespace

@@ -83,9 +83,9 @@ struct contact_intervals::state {
     /// Keeps the frame if the objects are nearer in it than in the frames before it since their last contact.
     void measure(std::uint32_t frame, const object_pair& pair, std::optional<nearest_frame>& nearest) const {
         const double most = nearest ? nearest->distance : std::numeric_limits<double>::infinity();
-        if (const auto found = distances->distance_below(mesh_of(pair.a), scene.poses()[pair.a], mesh_of(pair.b),
-                                                         scene.poses()[pair.b], most))
-            nearest = {frame, found->distance, found->error};
+        if (const auto nearer = distances->distance_below(mesh_of(pair.a), scene.poses()[pair.a], mesh_of(pair.b),
+                                                          scene.poses()[pair.b], most))
+            nearest = {frame, nearer->distance, nearer->error};
     }
 };
 

@@ -116,12 +116,12 @@ private:
         }
         [[nodiscard]] box bounds() const {
             using simd::eight_floats, simd::load_eight;
-            box all{};
+            box whole{};
             for (std::size_t k = 0; k < 3; ++k) {
-                all.min[static_cast<int>(k)] = simd::least(load_eight<eight_floats>(min[k].data()));
-                all.max[static_cast<int>(k)] = -simd::least(-load_eight<eight_floats>(max[k].data()));
+                whole.min[static_cast<int>(k)] = simd::least(load_eight<eight_floats>(min[k].data()));
+                whole.max[static_cast<int>(k)] = -simd::least(-load_eight<eight_floats>(max[k].data()));
             }
-            return all;
+            return whole;
         }
         /// The lanes whose boxes overlap, a bit each.
         [[nodiscard]] std::uint32_t overlapping(const query_box& q) const {

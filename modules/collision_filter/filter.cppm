@@ -38,12 +38,12 @@ public:
     /// Adds exceptions, pairs that are not tested whatever else is known of them, each in either order, or removes such
     /// exceptions again. A call takes time for all exceptions: pass them together.
     void add_exceptions(std::span<const index_pair> pairs) {
-        std::vector<index_pair> all = in_order(pairs);
-        const auto added = static_cast<std::ptrdiff_t>(all.size());
-        all.insert(all.end(), exceptions_.begin(), exceptions_.end());
-        std::ranges::inplace_merge(all, all.begin() + added);
-        all.erase(std::ranges::unique(all).begin(), all.end());
-        replace_exceptions(std::move(all));
+        std::vector<index_pair> united = in_order(pairs);
+        const auto added = static_cast<std::ptrdiff_t>(united.size());
+        united.insert(united.end(), exceptions_.begin(), exceptions_.end());
+        std::ranges::inplace_merge(united, united.begin() + added);
+        united.erase(std::ranges::unique(united).begin(), united.end());
+        replace_exceptions(std::move(united));
     }
     void remove_exceptions(std::span<const index_pair> pairs) {
         std::vector<index_pair> others;

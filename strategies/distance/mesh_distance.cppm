@@ -29,11 +29,11 @@ public:
     /// As `distance_stage` does.
     [[nodiscard]] mesh_distance distance(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b,
                                          const pose& pose_b) {
-        const auto found =
+        const auto nearest =
             distance_below(model_a, pose_a, model_b, pose_b, /*most=*/std::numeric_limits<double>::infinity());
-        if (!found || !is_finite(found->point_a) || !is_finite(found->point_b))
+        if (!nearest || !is_finite(nearest->point_a) || !is_finite(nearest->point_b))
             throw input_error("the distance of the meshes, or where it is, exceeds the range of double");
-        return *found;
+        return *nearest;
     }
     [[nodiscard]] std::optional<mesh_distance> distance_below(std::uint32_t model_a, const pose& pose_a,
                                                               std::uint32_t model_b, const pose& pose_b, double most) {

@@ -170,12 +170,12 @@ private:
         return boxes;
     }
     [[nodiscard]] static inline rows rows_of(const eight_boxes& boxes) noexcept {
-        rows all;
+        rows bounds;
         for (std::size_t k = 0; k < 3; ++k) {
-            all[k] = simd::load_eight<simd::eight_floats>(boxes.lower[k].data());
-            all[3 + k] = simd::load_eight<simd::eight_floats>(boxes.upper[k].data());
+            bounds[k] = simd::load_eight<simd::eight_floats>(boxes.lower[k].data());
+            bounds[3 + k] = simd::load_eight<simd::eight_floats>(boxes.upper[k].data());
         }
-        return all;
+        return bounds;
     }
 
     /// The pairs that may be near enough, if asked in the order of their gaps; valid until the next call.

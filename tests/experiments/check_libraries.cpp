@@ -28,9 +28,9 @@ TEST_CASE_METHOD(in_folder, "The programs that call libraries write lists of box
         CHECK(run_command({program, "--version"}).out.size() > 4);
         for (const std::vector<std::string>& inputs : std::vector<std::vector<std::string>>{{boxes}, meshes}) {
             const std::string list = folder / "list.csv";
-            const program_result made = run_command(joined(joined({program}, inputs), {list}));
-            INFO(made.err);
-            REQUIRE(made.status == 0);
+            const program_result ended = run_command(joined(joined({program}, inputs), {list}));
+            INFO(ended.err);
+            REQUIRE(ended.status == 0);
             const auto report = checked(joined(inputs, {list}));
             INFO(report.dump());
             CHECK(report["correct"] > 0);

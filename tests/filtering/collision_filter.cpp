@@ -50,13 +50,13 @@ struct row_with_movers {
         for (std::uint32_t id = 0; id < resting; ++id) filter.set(id, {.rests = true});
     }
     [[nodiscard]] std::vector<box> boxes(int frame) const {
-        std::vector<box> all;
+        std::vector<box> row;
         for (std::uint32_t id = 0; id < resting + movers; ++id) {
             const bool rests = id < resting;
             const auto x = static_cast<float>(rests ? id : 7 * (id - resting) + 3 * static_cast<std::uint32_t>(frame));
-            all.push_back({{x, rests ? 0.0F : 1.0F, 0}, {x + 1, rests ? 1.0F : 2.0F, 1}});
+            row.push_back({{x, rests ? 0.0F : 1.0F, 0}, {x + 1, rests ? 1.0F : 2.0F, 1}});
         }
-        return all;
+        return row;
     }
     [[nodiscard]] std::vector<index_pair> expected(int frame) const {
         std::vector<index_pair> pairs = overlapping(boxes(frame));
@@ -325,13 +325,13 @@ TEST_CASE("two sets within which many boxes overlap are searched once, and then 
     filter.add_exception({7, 310});
     std::vector<bool> present(340, true);
     const auto boxes = [](int frame) {
-        std::vector<box> all;
+        std::vector<box> row;
         for (int id = 0; id < 340; ++id) {
             const auto low = static_cast<float>(id < 300 ? id % 5 + frame % 2 : 4 * (id - 300) - 40 * frame);
             const auto high = low + static_cast<float>(id < 300 ? 30 : 3);
-            all.push_back({{low, low, low}, {high, high, high}});
+            row.push_back({{low, low, low}, {high, high, high}});
         }
-        return all;
+        return row;
     };
     std::map<bool, std::uint64_t> tests;
     for (const bool searches_all : {false, true}) {
@@ -385,13 +385,13 @@ TEST_CASE("a join ends once searching both sets costs less, and begins again") {
     collision_filter filter;
     for (std::uint32_t id = 0; id < 600; ++id) filter.set(id, {.set = id % 2 == 0 ? object_set::a : object_set::b});
     const auto boxes = [](int frame) {
-        std::vector<box> all;
+        std::vector<box> row;
         for (int id = 0; id < 600; ++id) {
             const bool in_pile = frame < 10 || frame >= 300;
             const auto low = static_cast<float>(in_pile ? 1000 * (id % 2) + id % 7 : 3 * id + frame % 3);
-            all.push_back({{low, low, low}, {low + 4, low + 4, low + 4}});
+            row.push_back({{low, low, low}, {low + 4, low + 4, low + 4}});
         }
-        return all;
+        return row;
     };
     const auto stage = filtered(global_of({}), filter);
     insert_all(*stage, 600);

@@ -243,14 +243,14 @@ TEST_CASE("whole nodes leave out no triangle within a distance") {
     const pose turned = turned_by({1, 0.2, -0.1, 0.3}, {3, -2, 1.5});
     pose stretched = turned;
     for (double& r : stretched.rotation) r *= 2;
-    std::size_t found = 0;
+    std::size_t pairs_of_truth = 0;
     for (const auto& [a, b] : {std::pair(&sheet, &cubes), std::pair(&sheet, &in_double), std::pair(&cubes, &sheet)})
         for (const pose_pair& poses :
              {pose_pair{{}, shifted({0.5, 0.25, 1.5})}, pose_pair{turned, {}}, pose_pair{turned, stretched},
               pose_pair{shifted({1e6, 0, 0}), shifted({1e6, 0.5, 3})}, pose_pair{{}, shifted({40, 0, 0})}})
             for (const double d : {0.0, 0.3, 1.7, 25.0}) {
                 const std::vector<index_pair> truth = expected(*a, *b, poses, d);
-                found += truth.size();
+                pairs_of_truth += truth.size();
                 for (const char* tree : {"implicit", "implicit:vertices=fetched", "canonical"}) {
                     CAPTURE(tree, d);
                     const auto stage = compose_within(composed({{strategy_kind::tree, tree}}), d);
@@ -261,7 +261,7 @@ TEST_CASE("whole nodes leave out no triangle within a distance") {
                     CHECK(sorted(pairs) == truth);
                 }
             }
-    CHECK(found > 10000);
+    CHECK(pairs_of_truth > 10000);
 }
 
 TEST_CASE("every tree measures the same distance of meshes with several levels of nodes, and finds a pair within it") {
@@ -295,18 +295,18 @@ TEST_CASE("every tree measures the same distance of meshes with several levels o
             const auto stage = compose_distance(c);
             stage->add_model(*a);
             stage->add_model(*b);
-            const mesh_distance found = stage->distance(0, poses.a, 1, poses.b);
-            if (!first) first = found;
-            RC_ASSERT(std::abs(found.distance - first->distance) <= found.error + first->error);
-            RC_ASSERT(found.error <= 0x1p-38 * (far + 100) * size);
+            const mesh_distance nearest = stage->distance(0, poses.a, 1, poses.b);
+            if (!first) first = nearest;
+            RC_ASSERT(std::abs(nearest.distance - first->distance) <= nearest.error + first->error);
+            RC_ASSERT(nearest.error <= 0x1p-38 * (far + 100) * size);
             const auto any_within = [&](double d) {
                 const auto within = compose_within(c, d);
                 within->add_model(*a);
                 within->add_model(*b);
                 return within->first_pair(0, poses.a, 1, poses.b).has_value();
             };
-            RC_ASSERT(any_within(found.distance + found.error));
-            const double below = found.distance - found.error;
+            RC_ASSERT(any_within(nearest.distance + nearest.error));
+            const double below = nearest.distance - nearest.error;
             RC_ASSERT(below <= 0 || !any_within(std::nextafter(below, 0.0)));
             apart += below > 0;
         }
@@ -473,22 +473,23 @@ TEST_CASE("through every tree, the distance of two meshes lies within its error 
             const auto stage = compose_distance(composition);
             stage->add_model(a);
             stage->add_model(b);
-            const mesh_distance found = stage->distance(0, poses.a, 1, poses.b);
+            const mesh_distance nearest = stage->distance(0, poses.a, 1, poses.b);
             // Exact decisions bound the distance from both sides.
-            const double above = found.distance + found.error, below = found.distance - found.error;
+            const double above = nearest.distance + nearest.error, below = nearest.distance - nearest.error;
             RC_ASSERT(
-                are_within(poses, a.given_triangle(found.triangles.a), b.given_triangle(found.triangles.b), above));
+                are_within(poses, a.given_triangle(nearest.triangles.a), b.given_triangle(nearest.triangles.b), above));
             RC_ASSERT(below <= 0 || expected(a, b, poses, std::nextafter(below, 0.0)).empty());
             double size = 1;
-            for (int k = 0; k < 3; ++k) size = std::max({size, std::abs(found.point_a[k]), std::abs(found.point_b[k])});
-            RC_ASSERT(found.error <= 0x1p-40 * (size + 1e7));
-            RC_ASSERT((found.distance == 0) == !expected(a, b, poses, 0).empty());
+            for (int k = 0; k < 3; ++k)
+                size = std::max({size, std::abs(nearest.point_a[k]), std::abs(nearest.point_b[k])});
+            RC_ASSERT(nearest.error <= 0x1p-40 * (size + 1e7));
+            RC_ASSERT((nearest.distance == 0) == !expected(a, b, poses, 0).empty());
             const auto is_on = [&](const mesh& m, std::uint32_t triangle, const pose& at, const vec3d& point) {
-                return are_within({at, {}}, m.given_triangle(triangle), {{point, point, point}}, found.point_error);
+                return are_within({at, {}}, m.given_triangle(triangle), {{point, point, point}}, nearest.point_error);
             };
-            RC_ASSERT(is_on(a, found.triangles.a, poses.a, found.point_a));
-            RC_ASSERT(is_on(b, found.triangles.b, poses.b, found.point_b));
-            ++(found.distance == 0 ? meeting : apart);
+            RC_ASSERT(is_on(a, nearest.triangles.a, poses.a, nearest.point_a));
+            RC_ASSERT(is_on(b, nearest.triangles.b, poses.b, nearest.point_b));
+            ++(nearest.distance == 0 ? meeting : apart);
         }
     }));
     CHECK(meeting > 20);
@@ -504,14 +505,14 @@ TEST_CASE("a distance below a length is found exactly where there is one") {
         stage->add_model(b);
         for (const double height : {1e-9, 2.5, 40.0}) {
             const pose above = turned_by({1, 0.1, 0.2, 0}, {0, 0, height + 6});
-            const mesh_distance found = stage->distance(0, {}, 1, above);
-            REQUIRE(found.distance > 0);
-            const double beyond = found.distance + 4 * found.error;
-            CHECK_FALSE(stage->distance_below(0, {}, 1, above, found.distance - 2 * found.error).has_value());
+            const mesh_distance nearest = stage->distance(0, {}, 1, above);
+            REQUIRE(nearest.distance > 0);
+            const double beyond = nearest.distance + 4 * nearest.error;
+            CHECK_FALSE(stage->distance_below(0, {}, 1, above, nearest.distance - 2 * nearest.error).has_value());
             CHECK_FALSE(stage->distance_below(0, {}, 1, above, 0).has_value());
             const auto below = stage->distance_below(0, {}, 1, above, beyond);
             REQUIRE(below.has_value());
-            CHECK(std::abs(below->distance - found.distance) <= below->error + found.error);
+            CHECK(std::abs(below->distance - nearest.distance) <= below->error + nearest.error);
         }
         CHECK(stage->distance_below(0, {}, 0, {}, 1e-300)->distance == 0);
     }
@@ -528,12 +529,12 @@ TEST_CASE("distances far below and above one are measured, and what exceeds the 
         const auto stage = compose_distance(composed({}));
         stage->add_model(m);
         // From (1, 0, 0) to (4, -3, 0), in units of the size.
-        const mesh_distance found = stage->distance(0, small, 0, beside);
-        CHECK(std::abs(found.distance - std::sqrt(18.0) * size) <= 1e-14 * size + found.error);
-        CHECK(found.error <= 1e-14 * size + 1e-323);
-        CHECK(std::abs(found.point_a[0] - size) <= found.point_error);
-        CHECK(std::abs(found.point_b[1] + 3 * size) <= found.point_error);
-        CHECK(found.point_error <= 1e-13 * size + 1e-320);
+        const mesh_distance nearest = stage->distance(0, small, 0, beside);
+        CHECK(std::abs(nearest.distance - std::sqrt(18.0) * size) <= 1e-14 * size + nearest.error);
+        CHECK(nearest.error <= 1e-14 * size + 1e-323);
+        CHECK(std::abs(nearest.point_a[0] - size) <= nearest.point_error);
+        CHECK(std::abs(nearest.point_b[1] + 3 * size) <= nearest.point_error);
+        CHECK(nearest.point_error <= 1e-13 * size + 1e-320);
     }
     mesh m = tetrahedron(1);
     const auto stage = compose_distance(composed({}));

@@ -173,8 +173,8 @@ TEST_CASE("eight pairs at once are decided as each alone, and as integers say") 
     generator g(568);
     std::size_t decided = 0, pairs = 0;
     for (int i = 0; i < 400; ++i) {
-        const auto& made = pose_classes[static_cast<std::size_t>(i) % pose_classes.size()];
-        const pose_pair poses = made.make(g, step(g));
+        const auto& of_class = pose_classes[static_cast<std::size_t>(i) % pose_classes.size()];
+        const pose_pair poses = of_class.make(g, step(g));
         std::array<triangle3d, 8> s{}, t{};
         aabb::triangle3<aabb::simd::eight_doubles> of_s{}, of_t{};
         aabb::near_batch batch;
@@ -234,21 +234,23 @@ TEST_CASE("measured distances lie within their bounds at any size, and so do the
         const pose_pair poses = pose_classes[c].make(g, by);
         CAPTURE(i, pose_classes[c].name, triangle_pairs::placements[placement]);
         const distance_judge judge = judged(poses, s, t);
-        const aabb::measured_distance found = measured(poses, s, t, /*most=*/std::numeric_limits<double>::infinity());
-        CHECK(judge.compare(found.upper) <= 0);
-        CHECK(judge.compare(found.lower) >= 0);
-        CHECK((found.lower <= found.value && found.value <= found.upper));
-        CHECK((found.upper == 0) == (judge.compare(0) == 0));
-        CHECK(is_near(found.p, poses.a, s, found.point_error));
-        CHECK(is_near(found.q, poses.b, t, found.point_error));
-        const distance_judge of_points = judged({}, {{found.p, found.p, found.p}}, {{found.q, found.q, found.q}});
+        const aabb::measured_distance distance =
+            measured(poses, s, t, /*most=*/std::numeric_limits<double>::infinity());
+        CHECK(judge.compare(distance.upper) <= 0);
+        CHECK(judge.compare(distance.lower) >= 0);
+        CHECK((distance.lower <= distance.value && distance.value <= distance.upper));
+        CHECK((distance.upper == 0) == (judge.compare(0) == 0));
+        CHECK(is_near(distance.p, poses.a, s, distance.point_error));
+        CHECK(is_near(distance.q, poses.b, t, distance.point_error));
+        const distance_judge of_points =
+            judged({}, {{distance.p, distance.p, distance.p}}, {{distance.q, distance.q, distance.q}});
         constexpr double most = std::numeric_limits<double>::max();
-        CHECK(of_points.compare(std::nextafter(found.value + found.point_error, most)) <= 0);
-        CHECK(of_points.compare(std::nextafter(std::max(0.0, found.value - found.point_error), 0.0)) >= 0);
-        ++(found.upper == 0 ? meeting : apart);
-        by_integers += found.upper > 0 && found.upper - found.lower <= 0x1p-48 * found.value;
+        CHECK(of_points.compare(std::nextafter(distance.value + distance.point_error, most)) <= 0);
+        CHECK(of_points.compare(std::nextafter(std::max(0.0, distance.value - distance.point_error), 0.0)) >= 0);
+        ++(distance.upper == 0 ? meeting : apart);
+        by_integers += distance.upper > 0 && distance.upper - distance.lower <= 0x1p-48 * distance.value;
         // What is certainly not nearer is left out.
-        CHECK(judge.compare(measured(poses, s, t, found.lower).lower) >= 0);
+        CHECK(judge.compare(measured(poses, s, t, distance.lower).lower) >= 0);
     }
     CHECK(apart > 1000);
     CHECK(meeting > 300);

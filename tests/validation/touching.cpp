@@ -140,20 +140,20 @@ TEST_CASE("solids whose surfaces meet touch, cross or lie inside each other as t
             case 2: at.rotation = {0, 0, -1, 3, 0, 0, 0, 0.5, 0}; break;
             default: at.rotation = {-1, 0, 0, 0, 1, 0.25, 0, 0, 1};
         }
-        const std::vector<aabb::component_contact> found = contacts(a, at, b, at);
+        const std::vector<aabb::component_contact> meetings = contacts(a, at, b, at);
         RC_PRE(components_of(a).parts.size() == 1U && components_of(b).parts.size() == 1U);
-        if (found.empty()) {
+        if (meetings.empty()) {
             ++apart;
             return;
         }
-        RC_ASSERT(found.size() == 1U);
+        RC_ASSERT(meetings.size() == 1U);
         // Cubes that meet in an edge or a corner only are no manifold.
-        if (found[0].relation == contact_relation::undecided) {
+        if (meetings[0].relation == contact_relation::undecided) {
             ++undecided;
             return;
         }
-        RC_ASSERT(found[0].relation == expected_relation(of_a, of_b));
-        ++counts[found[0].relation];
+        RC_ASSERT(meetings[0].relation == expected_relation(of_a, of_b));
+        ++counts[meetings[0].relation];
     }));
     CAPTURE(apart, undecided);
     for (std::size_t relation = 0; relation < aabb::contact_relation_names.size() - 1; ++relation) {
@@ -168,14 +168,14 @@ TEST_CASE("solids that meet in points only touch from outside or from inside") {
     const mesh cube = scaled(aabb::unit_cube(), 4, {0, 0, 0});
     mesh tip{{{2, 2, 4}, {1, 1, 5}, {3, 1, 5}, {2, 3, 5}}, {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}}};
     const auto relation = [](const mesh& a, const mesh& b) {
-        const auto found = contacts(a, {}, b, {});
-        REQUIRE(found.size() == 1);
+        const auto meetings = contacts(a, {}, b, {});
+        REQUIRE(meetings.size() == 1);
         const auto swapped = contacts(b, {}, a, {});
-        const auto mirrored = found[0].relation == contact_relation::a_inside_b   ? contact_relation::b_inside_a
-                              : found[0].relation == contact_relation::b_inside_a ? contact_relation::a_inside_b
-                                                                                  : found[0].relation;
+        const auto mirrored = meetings[0].relation == contact_relation::a_inside_b   ? contact_relation::b_inside_a
+                              : meetings[0].relation == contact_relation::b_inside_a ? contact_relation::a_inside_b
+                                                                                     : meetings[0].relation;
         CHECK(swapped == std::vector<aabb::component_contact>{{0, 0, mirrored}});
-        return found[0].relation;
+        return meetings[0].relation;
     };
     CHECK(relation(tip, cube) == contact_relation::touching);
     for (vec3f& v : tip.vertices) v[2] = 8 - v[2];  // now inside, and turned over
@@ -200,9 +200,9 @@ TEST_CASE("solids with a common edge lie as their wedges do, at any angles") {
         return m;
     };
     const auto relation = [&](const mesh& a, const mesh& b) {
-        const auto found = contacts(a, {}, b, {});
-        REQUIRE(found.size() == 1);
-        return found[0].relation;
+        const auto meetings = contacts(a, {}, b, {});
+        REQUIRE(meetings.size() == 1);
+        return meetings[0].relation;
     };
     for (int turn = 0; turn < 360; turn += 15) {
         CAPTURE(turn);

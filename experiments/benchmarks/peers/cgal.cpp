@@ -53,7 +53,7 @@ public:
         tree_.all_intersected_primitives(
             CGAL::Bbox_3(x - radius, y - radius, z - radius, x + radius, y + radius, z + radius),
             std::back_inserter(near));
-        for (const auto& found : near) visit(static_cast<std::uint32_t>(found - triangles_.begin()));
+        for (const auto& triangle : near) visit(static_cast<std::uint32_t>(triangle - triangles_.begin()));
     }
 
 private:
