@@ -12,8 +12,12 @@ std::uint64_t check_result::false_positives() const {
 
 /// Finds the rows of each frame; they are ordered by frame first, unless the list is.
 list_comparison::list_comparison(const pair_list& list, const list_extent& of)
-    : of_(of), list_(list.rows), begins_(of.frames + 1), explanation_(of) {
-    if (std::ranges::is_sorted(list_, {}, &listed_pair::frame)) {
+    : of_(of),
+      list_(list.rows),
+      is_by_frame_(std::ranges::is_sorted(list_, {}, &listed_pair::frame)),
+      begins_(of.frames + 1),
+      explanation_(of) {
+    if (is_by_frame_) {
         for (std::size_t frame = 0; frame < begins_.size(); ++frame)
             begins_[frame] = static_cast<std::size_t>(std::ranges::lower_bound(list_, frame, {}, &listed_pair::frame) -
                                                       list_.begin());
@@ -21,14 +25,19 @@ list_comparison::list_comparison(const pair_list& list, const list_extent& of)
         for (const listed_pair& row : list_)
             if (row.frame < of.frames) ++begins_[row.frame + 1];
         std::partial_sum(begins_.begin(), begins_.end(), begins_.begin());
-        ordered_.resize(begins_.back());
+        pairs_.resize(begins_.back());
         std::vector<std::size_t> next(begins_.begin(), begins_.end() - 1);
         for (const listed_pair& row : list_)
-            if (row.frame < of.frames) ordered_[next[row.frame]++] = row;
-        list_ = ordered_;
+            if (row.frame < of.frames) pairs_[next[row.frame]++] = pair_of(row);
     }
     result_.listed = list.rows.size();
     result_.unknown_frames = list.rows.size() - begins_.back();
+}
+
+/// The pair of a row, with its ids in order if they may be exchanged.
+aabb::index_pair list_comparison::pair_of(const listed_pair& row) const {
+    const auto [a, b] = row.pair;
+    return of_.is_symmetric ? aabb::index_pair{std::min(a, b), std::max(a, b)} : row.pair;
 }
 
 /// Whether sorted rows are pairs that the scene can have, each once.
@@ -42,12 +51,13 @@ bool list_comparison::are_pairs(std::span<const aabb::index_pair> rows) const {
 
 /// Sorts the rows of the frame, and counts those that are not pairs of the scene, or repeat one.
 void list_comparison::take_frame() {
-    const auto listed = list_.subspan(begins_[frame_], begins_[frame_ + 1] - begins_[frame_]);
-    rows_.resize(listed.size());
-    std::ranges::transform(listed, rows_.begin(), [is_symmetric = of_.is_symmetric](const listed_pair& row) {
-        const auto [a, b] = row.pair;
-        return is_symmetric ? aabb::index_pair{std::min(a, b), std::max(a, b)} : row.pair;
-    });
+    const std::size_t begin = begins_[frame_], count = begins_[frame_ + 1] - begin;
+    if (is_by_frame_) {
+        pairs_.resize(count);
+        std::ranges::transform(list_.subspan(begin, count), pairs_.begin(),
+                               [this](const listed_pair& row) { return pair_of(row); });
+    }
+    rows_ = is_by_frame_ ? std::span(pairs_) : std::span(pairs_).subspan(begin, count);
     if (!std::ranges::is_sorted(rows_, {}, key_of)) sorter_.sort(rows_);
     listed_ = rows_;
     if (are_pairs(rows_)) return;

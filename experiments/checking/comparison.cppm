@@ -44,19 +44,21 @@ public:
     [[nodiscard]] check_result result(std::vector<std::string> common) const;
 
 private:
+    [[nodiscard]] aabb::index_pair pair_of(const listed_pair& row) const;
     [[nodiscard]] bool are_pairs(std::span<const aabb::index_pair> rows) const;
     void take_frame();
     [[nodiscard]] frame_errors find_errors(std::span<const aabb::index_pair> truth);
 
     list_extent of_;
-    std::span<const listed_pair> list_;  // by frame, in the order of the list
-    std::vector<listed_pair> ordered_;   // these rows, if the list is in another order
-    std::vector<std::size_t> begins_;    // of each frame in `list_`, and their end
+    std::span<const listed_pair> list_;
+    bool is_by_frame_;                     // whether the list is in the order of frames
+    std::vector<aabb::index_pair> pairs_;  // of this frame; by frame if the list is in another order
+    std::vector<std::size_t> begins_;      // of each frame in the ordered list, and their end
     check_result result_;
     list_explanation explanation_;
     pair_sorter sorter_;
     std::uint32_t frame_ = 0;
-    std::vector<aabb::index_pair> rows_;                               // of this frame, sorted
+    std::span<aabb::index_pair> rows_;                                 // of this frame, sorted
     std::span<const aabb::index_pair> listed_;                         // those that the scene can have, each once
     std::vector<aabb::index_pair> accepted_;                           // the same, if not all rows are
     std::vector<aabb::index_pair> false_negatives_, false_positives_;  // begin with those of this frame

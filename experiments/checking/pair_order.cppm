@@ -28,8 +28,8 @@ public:
         for (const auto [a, b] : pairs) bits_of_ids |= a | b;
         const std::size_t id_bits = std::bit_width(bits_of_ids);
         const std::size_t count_bits = std::bit_width(pairs.size());
-        // No more counters than pairs, unless they fit in the first level of the cache.
-        const std::size_t most_bits = std::max<std::size_t>(count_bits, 12) - 1;
+        // No more counters than twice the pairs, unless they fit in the first level of the cache.
+        const std::size_t most_bits = std::max<std::size_t>(count_bits, 11);
         const std::size_t digits = (id_bits + most_bits - 1) / most_bits;
         const std::size_t digit_bits = (id_bits + digits - 1) / digits;
         const std::size_t values = std::size_t{1} << digit_bits;
