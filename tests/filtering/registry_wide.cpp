@@ -127,7 +127,7 @@ mesh_frames make_mesh_frames(const std::string& kind, std::uint32_t seed) {
     std::mt19937 random(seed);
     std::vector<std::uint32_t> mesh_of;
     for (std::uint32_t i = 0; i < objects; ++i) mesh_of.push_back(i % 4 == 0 ? 1 : 0);
-    mesh_frames moving{.scene = std::make_shared<manual_scene>(std::vector{tetrahedron(1), ripples(3)}, mesh_of),
+    mesh_frames moving{.scene = std::make_shared<manual_scene>(std::vector{tetrahedron(1), ripples(2)}, mesh_of),
                        .filter = stated_filter(objects),
                        .poses = {},
                        .all_contacts = {},
