@@ -6,8 +6,6 @@ namespace aabb {
 
 namespace {
 
-__extension__ using unsigned_128 = unsigned __int128;
-
 /// Disjoint sets of vertices (Tarjan, "Efficiency of a good but not linear set union algorithm", 1975), with paths
 /// halved.
 class vertex_sets {
@@ -25,62 +23,6 @@ public:
 
 private:
     std::vector<std::uint32_t> parent_;
-};
-
-/// A sum of products of three doubles, exactly, in two's complement. In units of 2^-3222, the cube of the least double,
-/// a product has 6294 bits at most, so that 6400 bits hold more terms than there can be.
-class exact_sum {
-public:
-    void add(double x, double y, double z) noexcept {
-        const factor a(x), b(y), c(z);
-        if (a.mantissa == 0 || b.mantissa == 0 || c.mantissa == 0) return;
-        const unsigned_128 ab = unsigned_128{a.mantissa} * b.mantissa;
-        const unsigned_128 low = unsigned_128{static_cast<std::uint64_t>(ab)} * c.mantissa;
-        const unsigned_128 high = (ab >> 64U) * c.mantissa + (low >> 64U);
-        const std::array product{static_cast<std::uint64_t>(low), static_cast<std::uint64_t>(high),
-                                 static_cast<std::uint64_t>(high >> 64U), std::uint64_t{0}};
-        const unsigned place = a.place + b.place + c.place;
-        const bool is_negative = (a.is_negative != b.is_negative) != c.is_negative;
-        std::uint64_t shifted_out = 0, carry = 0;
-        for (std::size_t i = 0; i < product.size() || carry != 0; ++i) {
-            const std::size_t at = place / 64 + i;
-            if (at == limbs_.size()) break;  // a carry out of the top belongs to the complement
-            std::uint64_t term = carry;
-            carry = 0;
-            if (i < product.size()) {
-                const unsigned_128 shifted = (unsigned_128{product[i]} << place % 64) | shifted_out;
-                shifted_out = static_cast<std::uint64_t>(shifted >> 64U);
-                carry = static_cast<std::uint64_t>(
-                    __builtin_add_overflow(term, static_cast<std::uint64_t>(shifted), &term));
-            }
-            carry += static_cast<std::uint64_t>(is_negative ? __builtin_sub_overflow(limbs_[at], term, &limbs_[at])
-                                                            : __builtin_add_overflow(limbs_[at], term, &limbs_[at]));
-        }
-    }
-
-    [[nodiscard]] int sign() const noexcept {
-        if (limbs_.back() >> 63U != 0) return -1;
-        return std::ranges::any_of(limbs_, [](std::uint64_t x) { return x != 0; }) ? 1 : 0;
-    }
-
-private:
-    /// The magnitude of a double, mantissa · 2^(place - 1074).
-    struct factor {
-        std::uint64_t mantissa;
-        unsigned place;
-        bool is_negative;
-
-        explicit factor(double x) noexcept {
-            const auto bits = std::bit_cast<std::uint64_t>(x);
-            const auto exponent = static_cast<unsigned>(bits >> 52U & 0x7ffU);
-            mantissa = bits & 0xf'ffff'ffff'ffffU;
-            if (exponent != 0) mantissa |= std::uint64_t{1} << 52U;
-            place = std::max(exponent, 1U) - 1;
-            is_negative = std::signbit(x);
-        }
-    };
-
-    std::array<std::uint64_t, 100> limbs_{};
 };
 
 /// The sign of the volume that triangles enclose: of the sum of det(p, q, r) over triangles pqr, six times the volume
@@ -107,14 +49,12 @@ int enclosed_volume_sign(const mesh& m, std::span<const std::uint32_t> triangles
     const double error = 2 * (3 * count + 4) * unit * magnitude + 12 * count * 0x1p-1074 * greatest;
     if (volume > error) return 1;
     if (volume < -error) return -1;
-    exact_sum sum;
-    for (const std::uint32_t t : triangles) {
-        const triangle3d p = m.given_triangle(t);
-        for (int i = 0; i < 3; ++i) {
-            const int j = (i + 1) % 3, k = (i + 2) % 3;
-            sum.add(p[0][i], p[1][j], p[2][k]);
-            sum.add(-p[0][i], p[1][k], p[2][j]);
-        }
+    product_sum sum;
+    constexpr std::size_t most_triangles_added = product_sum::most_products / 6;
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+        const triangle3d p = m.given_triangle(triangles[i]);
+        sum.add_determinant(p[0], p[1], p[2]);
+        if (i % most_triangles_added == 0) sum.carry();
     }
     return sum.sign();
 }

@@ -1,6 +1,3 @@
-module;
-#include <cassert>
-
 module aabb.geometry;
 
 import :wide_integer;
@@ -9,67 +6,13 @@ namespace aabb {
 
 namespace {
 
-/// A finite double as ± mantissa · 2^exponent with an odd mantissa; mantissa 0 for zero.
-struct factor {
-    std::uint64_t mantissa = 0;
-    int exponent = 0;
-    bool is_negative = false;
-
-    explicit factor(double x) noexcept {
-        assert(std::isfinite(x));
-        const auto bits = std::bit_cast<std::uint64_t>(x);
-        const auto biased = static_cast<int>(bits >> 52U & 0x7ffU);
-        mantissa = bits & 0xf'ffff'ffff'ffffU;
-        if (biased != 0) mantissa |= std::uint64_t{1} << 52U;
-        if (mantissa == 0) return;
-        const int zeros = std::countr_zero(mantissa);
-        mantissa >>= static_cast<unsigned>(zeros);
-        exponent = std::max(biased, 1) - 1075 + zeros;
-        is_negative = std::signbit(x);
-    }
-};
-
-/// A term of a coordinate: a product of two doubles, exactly.
-struct term {
-    unsigned_128 magnitude = 0;
-    int exponent = 0;
-    bool is_negative = false;
-
-    term() = default;
-    term(const factor& x, const factor& y) noexcept
-        : magnitude(unsigned_128{x.mantissa} * y.mantissa),
-          exponent(x.exponent + y.exponent),
-          is_negative(x.is_negative != y.is_negative) {}
-
-    /// The exponent of a power of two above the magnitude, which is not 0.
-    [[nodiscard]] int end() const noexcept {
-        const auto high = static_cast<std::uint64_t>(magnitude >> 64U);
-        const int bits = high != 0 ? 64 + static_cast<int>(std::bit_width(high))
-                                   : static_cast<int>(std::bit_width(static_cast<std::uint64_t>(magnitude)));
-        return exponent + bits;
-    }
-};
-
-/// The terms of a corner's coordinates: on each axis three products and the translation.
-using corner_terms = std::array<std::array<term, 4>, 3>;
-
-corner_terms terms_of(const posed_point& p) noexcept {
-    corner_terms terms;
-    const std::array vertex{factor((*p.vertex)[0]), factor((*p.vertex)[1]), factor((*p.vertex)[2])};
-    for (std::size_t k = 0; k < 3; ++k) {
-        for (std::size_t j = 0; j < 3; ++j) terms[k][j] = term(factor(p.at->rotation[3 * k + j]), vertex[j]);
-        terms[k][3] = term(factor(p.at->translation[static_cast<int>(k)]), factor(1));
-    }
-    return terms;
-}
-
 /// The integers of all corners in units of 2^unit, which divides every term.
 template <std::size_t Limbs>
 std::array<vec3<wide_integer<Limbs>>, 6> integers_of(const std::array<corner_terms, 6>& corners, int unit) noexcept {
     std::array<vec3<wide_integer<Limbs>>, 6> integers{};
     for (std::size_t c = 0; c < 6; ++c)
         for (std::size_t k = 0; k < 3; ++k)
-            for (const term& t : corners[c][k])
+            for (const product_of_doubles& t : corners[c][k])
                 if (t.magnitude != 0)
                     integers[c][static_cast<int>(k)].add(t.magnitude, t.exponent - unit, t.is_negative);
     return integers;
@@ -133,26 +76,21 @@ auto compute_in(const Corners& corners, const Compute& compute) noexcept {
 /// determinant, below 6 · 2^(3 (end + 3)) < 2^(3 (end + 4)), three times.
 exact_corners::exact_corners(const std::array<posed_point, 6>& points) noexcept {
     std::array<corner_terms, 6> corners;
-    int unit = std::numeric_limits<int>::max(), end = std::numeric_limits<int>::min();
+    term_range range;
     for (std::size_t c = 0; c < 6; ++c) {
-        corners[c] = terms_of(points[c]);
-        for (const auto& along : corners[c])
-            for (const term& t : along)
-                if (t.magnitude != 0) {
-                    unit = std::min(unit, t.exponent);
-                    end = std::max(end, t.end());
-                }
+        corners[c] = terms_of(*points[c].at, *points[c].vertex);
+        range.note(corners[c]);
     }
-    unit_ = end < unit ? 0 : unit;
-    const int bits = end < unit ? 0 : end - unit + 5;
+    unit_ = range.unit();
+    const int bits = range.bits() + 5;
     if (bits <= 3 * 64)
-        corners_ = integers_of<3>(corners, unit);
+        corners_ = integers_of<3>(corners, unit_);
     else if (bits <= 8 * 64)
-        corners_ = integers_of<8>(corners, unit);
+        corners_ = integers_of<8>(corners, unit_);
     else if (bits <= 20 * 64)
-        corners_ = integers_of<20>(corners, unit);
+        corners_ = integers_of<20>(corners, unit_);
     else
-        corners_ = integers_of<68>(corners, unit);
+        corners_ = integers_of<68>(corners, unit_);
 }
 
 int exact_corners::side(int a, int b, int c, int d) const noexcept {

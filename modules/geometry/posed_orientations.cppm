@@ -6,6 +6,7 @@ import aabb.std;
 import :points;
 import :pose;
 import :predicates;
+import :product_sum;
 import :wide_integer;
 
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)  // see aabb.base:floating_point

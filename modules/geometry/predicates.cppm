@@ -4,6 +4,7 @@ export module aabb.geometry:predicates;
 
 import aabb.std;
 import :points;
+import :product_sum;
 
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)  // see aabb.base:floating_point
 
@@ -44,12 +45,6 @@ struct corner_sides {
 /// Whether all coordinates are multiples of a unit on their axis such that the extent is less than 2^16 units. False
 /// for extents whose products would leave the range of double, and for coordinates that are too large to decide.
 [[nodiscard]] bool are_on_lattice(const triangle3d& s, const triangle3d& t, const vec3d& extent) noexcept;
-
-/// A number whose exponent may exceed that of a double: mantissa 2^exponent, |mantissa| in [1/2, 1), or both 0.
-struct scaled_double {
-    double mantissa;
-    int exponent;
-};
 
 /// The determinant of `exact_side` and the component of `exact_turn`, within 1.001 · 2^-53 of their value.
 [[nodiscard]] scaled_double exact_volume(const vec3d& a, const vec3d& b, const vec3d& c, const vec3d& d) noexcept;

@@ -1,10 +1,9 @@
 export module aabb.geometry:wide_integer;
 
 import aabb.std;
+import :exact_products;
 
 export namespace aabb {
-
-__extension__ using unsigned_128 = unsigned __int128;
 
 /// A signed integer of fixed width in two's complement. Sums wrap, so that callers choose widths that hold every
 /// intermediate result.

@@ -6,63 +6,17 @@ namespace aabb {
 
 namespace {
 
-/// A term of a coordinate: a product of two doubles, exactly.
-struct product_of_doubles {
-    unsigned_wide magnitude = 0;
-    int exponent = 0;
-    bool is_negative = false;
-
-    product_of_doubles() = default;
-    product_of_doubles(double x, double y) noexcept {
-        const odd_double p(x), q(y);
-        magnitude = unsigned_wide{p.mantissa} * q.mantissa;
-        exponent = p.exponent + q.exponent;
-        is_negative = p.is_negative != q.is_negative;
-    }
-
-    /// The exponent of a power of two above the magnitude, which is not 0.
-    [[nodiscard]] int end() const noexcept {
-        const auto high = static_cast<std::uint64_t>(magnitude >> 64U);
-        const auto low = static_cast<std::uint64_t>(magnitude);
-        return exponent +
-               (high != 0 ? 64 + static_cast<int>(std::bit_width(high)) : static_cast<int>(std::bit_width(low)));
-    }
-};
-
-/// The terms of a corner's coordinates: on each axis three products and the translation.
-using corner_terms = std::array<std::array<product_of_doubles, 4>, 3>;
-
-corner_terms terms_of(const pose& at, const vec3d& vertex) noexcept {
-    corner_terms terms;
-    for (std::size_t k = 0; k < 3; ++k) {
-        for (std::size_t j = 0; j < 3; ++j) terms[k][j] = {at.rotation[3 * k + j], vertex[static_cast<int>(j)]};
-        terms[k][3] = {at.translation[static_cast<int>(k)], 1};
-    }
-    return terms;
-}
-
-/// All terms of two triangles and of a length, and the range of their bits.
+/// All terms of two triangles, and the range of their bits.
 struct pair_terms {
     std::array<corner_terms, 6> corners;
-    product_of_doubles length;
-    int unit = std::numeric_limits<int>::max();  // 2^unit divides every term
-    int end = std::numeric_limits<int>::min();   // every term is below 2^end
+    term_range range;
 
-    pair_terms(const pose_pair& poses, const triangle3d& s, const triangle3d& t, double d) noexcept : length(d, 1) {
-        note(length);
+    pair_terms(const pose_pair& poses, const triangle3d& s, const triangle3d& t) noexcept {
         for (std::size_t i = 0; i < 6; ++i) {
             const int corner = static_cast<int>(i % 3);
             corners[i] = i < 3 ? terms_of(poses.a, s[corner]) : terms_of(poses.b, t[corner]);
-            for (const auto& along : corners[i])
-                for (const product_of_doubles& term : along) note(term);
+            range.note(corners[i]);
         }
-        if (end < unit) unit = end = 0;  // all are zero
-    }
-
-    void note(const product_of_doubles& term) noexcept {
-        if (term.magnitude == 0) return;
-        unit = std::min(unit, term.exponent);
-        end = std::max(end, term.end());
     }
 };
 
@@ -127,7 +81,8 @@ public:
                 for (const product_of_doubles& term : terms.corners[i][k])
                     if (term.magnitude != 0)
                         corners_[i].at[k] =
-                            corners_[i].at[k] + Integer(term.magnitude, term.exponent - terms.unit, term.is_negative);
+                            corners_[i].at[k] +
+                            Integer(term.magnitude, term.exponent - terms.range.unit(), term.is_negative);
     }
 
     /// Calls `take` for each pair of features with numerator and denominator of their squared distance, and a function
@@ -216,14 +171,15 @@ private:
 
 /// Calls `compute` with features in integers that are wide enough. A coordinate of four terms below 2^end is below
 /// 2^(bits + 2), a difference 2^(bits + 3), a component of a normal 2^(2 bits + 7), a volume 2^(3 bits + 12), and its
-/// square, times that of nothing else, 2^(6 bits + 24); d² times a squared normal is below 2^(6 bits + 16), and the
-/// numerator of a nearest point, a corner times a squared normal and edges times as much, below 2^(5 bits + 22). A sum
-/// or a product may take one limb more before its leading zeros are dropped. The greatest range is that of products of
-/// doubles, from 2^-2148 to 2^2048.
+/// square, times that of nothing else, 2^(6 bits + 24); the square of the mantissa of d, below 2^106, times a squared
+/// normal is below 2^(4 bits + 122), and the numerator of a nearest point, a corner times a squared normal and edges
+/// times as much, below 2^(5 bits + 22). A sum or a product may take one limb more before its leading zeros are
+/// dropped. The greatest range is that of products of doubles, from 2^-2148 to 2^2048.
 template <class Compute>
 auto in_integers(const pair_terms& terms, const Compute& compute) noexcept {
     constexpr std::size_t narrow = 24, wide = 400;
-    const auto limbs = static_cast<std::size_t>(6 * (terms.end - terms.unit) + 24) / 64 + 3;
+    const int bits = std::max(6 * terms.range.bits() + 24, 4 * terms.range.bits() + 122);
+    const std::size_t limbs = static_cast<std::size_t>(bits) / 64 + 3;
     if (limbs <= narrow) return compute(exact_integer<narrow>());
     return compute(exact_integer<wide>());
 }
@@ -231,30 +187,30 @@ auto in_integers(const pair_terms& terms, const Compute& compute) noexcept {
 }  // namespace
 
 bool disjoint_triangles::are_within(double d) const noexcept {
-    const pair_terms terms(poses_, s_, t_, d);
+    const pair_terms terms(poses_, s_, t_);
+    const odd_double length(d);
+    // The power of two of d may be far from that of the corners, so that it stays apart.
+    const int shift = 2 * (terms.range.unit() - length.exponent);
     return in_integers(terms, [&]<class Integer>(const Integer& /*zero*/) {
-        const Integer bound = terms.length.magnitude == 0
-                                  ? Integer()
-                                  : Integer(terms.length.magnitude, terms.length.exponent - terms.unit, false);
-        const Integer square = bound * bound;
+        const Integer square(unsigned_128{length.mantissa} * length.mantissa, 0, false);
         return exact_features<Integer>(terms).each_distance(
             [&](const Integer& numerator, const Integer& denominator, const auto& /*nearest*/) {
-                return numerator <= square * denominator;
+                return is_at_most(numerator, shift, square * denominator);
             });
     });
 }
 
 /// Numerators and denominators are rounded once, and so are their quotients: 3.01 u are less than 2^-51.
 nearest_of_triangles disjoint_triangles::nearest() const noexcept {
-    const pair_terms terms(poses_, s_, t_, 0);
+    const pair_terms terms(poses_, s_, t_);
     return in_integers(terms, [&]<class Integer>(const Integer& /*zero*/) {
         std::optional<nearest_of_triangles> least;
         const auto take = [&](const Integer& numerator, const Integer& denominator, const auto& nearest) {
-            const scaled_double squared = rounded_quotient(numerator, denominator, 2 * terms.unit);
+            const scaled_double squared = rounded_quotient(numerator, denominator, 2 * terms.range.unit());
             const auto order = [](const scaled_double& x) { return std::pair(x.exponent, x.mantissa); };
             if (least && !(order(squared) < order(least->squared))) return false;
             const auto [p, q] = nearest();
-            least = nearest_of_triangles{squared, rounded(p, terms.unit), rounded(q, terms.unit)};
+            least = nearest_of_triangles{squared, rounded(p, terms.range.unit()), rounded(q, terms.range.unit())};
             return false;  // continues
         };
         static_cast<void>(exact_features<Integer>(terms).each_distance(take));
