@@ -2,17 +2,18 @@
 
 #include <algorithm>
 #include <bit>
-#include <boost/multiprecision/cpp_bin_float.hpp>
-#include <boost/multiprecision/cpp_int.hpp>
+#include <boost/multiprecision/gmp.hpp>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <limits>
 #include <utility>
 #include <vector>
 
 namespace {
 
-using integer = boost::multiprecision::cpp_int;
+using integer = boost::multiprecision::mpz_int;
 using vector = std::array<integer, 3>;
 
 /// The exponent of the last bit of x that is set; the greatest number for 0.
@@ -66,21 +67,26 @@ integer product(const vector& p, const vector& q) {
     return p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
 }
 
-/// By expansion along the first row.
-integer determinant(const std::vector<std::vector<integer>>& m) {
-    if (m.empty()) return 1;
-    integer sum = 0;
-    for (std::size_t c = 0; c < m.size(); ++c) {
-        std::vector<std::vector<integer>> minor;
-        for (std::size_t r = 1; r < m.size(); ++r) {
-            minor.push_back(m[r]);
-            minor.back().erase(minor.back().begin() + static_cast<std::ptrdiff_t>(c));
+/// A matrix of at most three rows and columns, which are those of a larger one.
+struct small_matrix {
+    std::array<vector, 3> rows;
+    std::size_t size = 0;
+
+    [[nodiscard]] integer determinant() const {
+        const auto& [a, b, c] = rows;
+        switch (size) {
+            case 0: return 1;
+            case 1: return a[0];
+            case 2: return a[0] * b[1] - a[1] * b[0];
+            default:
+                return a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) +
+                       a[2] * (b[0] * c[1] - b[1] * c[0]);
         }
-        const integer term = m[0][c] * determinant(minor);
-        c % 2 == 0 ? sum += term : sum -= term;
     }
-    return sum;
-}
+    void swap_column(std::size_t column, vector& other) {
+        for (std::size_t r = 0; r < size; ++r) swap(rows[r][column], other[r]);
+    }
+};
 
 /// The corners of each face of a triangle, as bits: corners, edges and the triangle.
 std::vector<std::vector<std::size_t>> faces() {
@@ -102,7 +108,8 @@ struct distance_judge::quotient {
 
 /// The least of the distances of all pairs of faces. For each, the points p of the one and q of the other for which p -
 /// q is perpendicular to both solve a linear system, whose matrix is that of the dot products of all edges. Where it is
-/// singular, the same distance is that of smaller faces. Points outside the faces do not count.
+/// singular, as with the four edges of two triangles, the same distance is that of smaller faces. Points outside the
+/// faces do not count.
 distance_judge::distance_judge(const placement& of_s, const triangle& s, const placement& of_t, const triangle& t) {
     units in;
     in.note(of_s, s);
@@ -118,19 +125,21 @@ distance_judge::distance_judge(const placement& of_s, const triangle& s, const p
             std::vector<vector> edges;
             for (std::size_t i = 1; i < f.size(); ++i) edges.push_back(between(p[f[i]], p[f[0]]));
             for (std::size_t i = 1; i < g.size(); ++i) edges.push_back(between(q[g[0]], q[g[i]]));
+            if (edges.size() > 3) continue;
             const vector start = between(p[f[0]], q[g[0]]);
-            std::vector<std::vector<integer>> matrix;
-            for (const vector& e : edges) {
-                matrix.emplace_back();
-                for (const vector& other : edges) matrix.back().push_back(product(e, other));
+            small_matrix matrix{.rows = {}, .size = edges.size()};
+            vector right;
+            for (std::size_t r = 0; r < edges.size(); ++r) {
+                for (std::size_t c = 0; c < edges.size(); ++c) matrix.rows[r][c] = product(edges[r], edges[c]);
+                right[r] = -product(edges[r], start);
             }
-            const integer whole = determinant(matrix);  // not negative: it is that of a Gram matrix
+            const integer whole = matrix.determinant();  // not negative: it is that of a Gram matrix
             if (whole == 0) continue;
             std::vector<integer> weights;  // times `whole`, by Cramer's rule
             for (std::size_t c = 0; c < edges.size(); ++c) {
-                auto replaced = matrix;
-                for (std::size_t r = 0; r < edges.size(); ++r) replaced[r][c] = -product(edges[r], start);
-                weights.push_back(determinant(replaced));
+                matrix.swap_column(c, right);
+                weights.push_back(matrix.determinant());
+                matrix.swap_column(c, right);
             }
             integer of_f = 0, of_g = 0;
             for (std::size_t i = 0; i < weights.size(); ++i) (i + 1 < f.size() ? of_f : of_g) += weights[i];
@@ -158,7 +167,14 @@ int distance_judge::compare(double d) const {
 }
 
 double distance_judge::rounded() const {
-    using real = boost::multiprecision::cpp_bin_float_100;
-    const real root = sqrt(real(squared_->numerator) / real(squared_->denominator));
-    return static_cast<double>(ldexp(root, squared_->unit));
+    if (squared_->numerator == 0) return 0;
+    // An even power of two gives the quotient more than twice the bits of a double.
+    constexpr std::ptrdiff_t bits = 112;
+    const auto size = [](const integer& x) { return static_cast<std::ptrdiff_t>(msb(x)); };
+    std::ptrdiff_t shift = bits - size(squared_->numerator) + size(squared_->denominator);
+    shift += shift & 1;
+    integer numerator = squared_->numerator, denominator = squared_->denominator;
+    (shift > 0 ? numerator : denominator) <<= static_cast<unsigned>(std::abs(shift));
+    const integer root = sqrt(integer(numerator / denominator));
+    return std::ldexp(root.convert_to<double>(), squared_->unit - static_cast<int>(shift / 2));
 }
