@@ -73,26 +73,16 @@ private:
 
     template <class IsAsked>
     [[nodiscard]] crossings crossings_of(const parity_ray& ray, const IsAsked& is_asked) const {
-        const Tree& tree = surface_.tree();
         crossings seen;
-        std::vector<typename Tree::cursor> open(1, surface_.root());
-        while (!open.empty()) {
-            const typename Tree::cursor node = open.back();
-            open.pop_back();
-            if (!ray.may_meet(tree.bounds(node))) continue;
-            if (!tree.is_leaf(node)) {
-                for (const typename Tree::cursor& child : tree.children(node, triangles())) open.push_back(child);
-                continue;
-            }
-            const std::uint32_t triangle = tree.triangle(node);
+        each_triangle_in(surface_, ray.reach(), [&](std::uint32_t triangle) {
             const std::uint32_t component = components_.of_triangles[triangle];
-            if (!parts()[component].is_closed() || !is_asked(component)) continue;
+            if (!parts()[component].is_closed() || !is_asked(component)) return false;
             const ray_crossing in = ray.crossing(triangle);
             if (in == ray_crossing::leaves || in == ray_crossing::enters) seen.crossed.push_back({component, in});
             seen.is_clear = in != ray_crossing::unclear;
             seen.starts_on = in == ray_crossing::starts_on;
-            if (!seen.is_clear || seen.starts_on) break;
-        }
+            return !seen.is_clear || seen.starts_on;
+        });
         return seen;
     }
 

@@ -18,13 +18,24 @@ std::uint64_t scattered(std::uint64_t x) noexcept {
 }
 
 /// A coordinate of grid point `i` around `centre`: a multiple of a power of two, computed without rounding.
-/// @param magnitude of the greatest coordinate of the surface
+/// @param magnitude of the greatest coordinate, that of the centre included
 double grid_coordinate(std::uint32_t i, double centre, double extent, double magnitude) noexcept {
-    // The multiplier stays below 2^53, and the grid is at least as large as the surface.
-    // An extent may exceed the doubles.
+    // The multiplier stays below 2^53, and the grid is at least as large as the extent, which may exceed the doubles.
     const double least_step = std::clamp(std::max(extent * 0x1p-32, magnitude * 0x1p-51), 0x1p-1000, 0x1p990);
     const double step = std::ldexp(1, std::ilogb(least_step) + 1);
     return step * (std::round(centre / step) + (static_cast<double>(i) - 0x1p31));
+}
+
+/// The whole range of float.
+box boundless() noexcept {
+    constexpr float most = std::numeric_limits<float>::max();
+    return {{-most, -most, -most}, {most, most, most}};
+}
+
+/// The next float towards a bound from one that is nearest to x, so that x plus the rounding of a sum lies within.
+float rounded_towards(double x, float bound) noexcept {
+    constexpr double most = std::numeric_limits<float>::max();
+    return std::nextafter(static_cast<float>(std::clamp(x, -most, most)), bound);
 }
 
 bool has_area(const triangle3d& t) noexcept {
@@ -63,45 +74,52 @@ bool parity_ray::starts_outside() const noexcept {
     return false;
 }
 
-/// The target lies beyond the face of the box that is nearest to the start, so that the ray leaves the box before it.
 void parity_ray::aim(std::uint64_t attempt) {
+    if (!image_ || !aim_beyond_box(attempt)) aim_far_away(attempt);
+}
+
+/// Aims beyond the face of the box that is nearest to the start, so that the ray leaves the box before the target. The
+/// grid is at most a thousandth as wide as the surface, unless it lies far from the origin: `reach` then is about as
+/// slender as a triangle of a million.
+/// @returns whether the target is a number, and certainly beyond the box
+bool parity_ray::aim_beyond_box(std::uint64_t attempt) {
     const vec3d low = in_double(bounds_.min), high = in_double(bounds_.max);
-    double extent = 0;
-    for (int k = 0; k < 3; ++k) extent = std::max(extent, high[k] - low[k]);
-    const std::uint64_t number = scattered(attempt);
-    const std::array<std::uint32_t, 2> grid_point{static_cast<std::uint32_t>(number),
-                                                  static_cast<std::uint32_t>(number >> 32U)};
-    if (image_) {
-        int axis = 0;
-        bool is_up = true;
-        double nearest = std::numeric_limits<double>::infinity();
-        for (int k = 0; k < 3; ++k)
-            for (const bool up : {false, true})
-                if (const double distance = up ? high[k] - (*image_)[k] : (*image_)[k] - low[k]; distance < nearest) {
-                    nearest = distance;
-                    axis = k;
-                    is_up = up;
-                }
-        const vertex_frame& frame = surface_->frame;
-        const double margin =
-            extent + 8 * image_error_[axis] + 0x1p-20 * std::max(std::abs(low[axis]), std::abs(high[axis]));
-        vec3d image = *image_;
-        image[axis] = is_up ? high[axis] + margin : low[axis] - margin;
-        vec3d target = frame.vertex(image);
-        const vec3d first = frame.vertex(low), last = frame.vertex(high);
-        if (attempt > 0)
-            for (int i = 0; i < 2; ++i) {
-                const int k = (axis + 1 + i) % 3;
-                target[k] = grid_coordinate(grid_point[static_cast<std::size_t>(i)], first[k] / 2 + last[k] / 2,
-                                            frame.scale * extent, std::max(std::abs(first[k]), std::abs(last[k])));
+    int axis = 0;
+    bool is_up = true;
+    double nearest = std::numeric_limits<double>::infinity(), extent = 0;
+    for (int k = 0; k < 3; ++k) {
+        extent = std::max(extent, high[k] - low[k]);
+        for (const bool up : {false, true})
+            if (const double distance = up ? high[k] - (*image_)[k] : (*image_)[k] - low[k]; distance < nearest) {
+                nearest = distance;
+                axis = k;
+                is_up = up;
             }
-        if (is_finite(target)) {
-            aim_at(target);
-            const double reached = image_of_target_[axis], error = 4 * error_[axis];
-            if (is_bounded_ && (is_up ? reached - error > high[axis] : reached + error < low[axis])) return;
+    }
+    const double margin =
+        extent + 8 * image_error_[axis] + 0x1p-20 * std::max(std::abs(low[axis]), std::abs(high[axis]));
+    vec3d image = *image_;
+    image[axis] = is_up ? high[axis] + margin : low[axis] - margin;
+    const vertex_frame& frame = surface_->frame;
+    vec3d target = frame.vertex(image);
+    if (attempt > 0) {
+        const vec3d first = frame.vertex(low), last = frame.vertex(high);
+        const std::uint64_t number = scattered(attempt);
+        for (int i = 0; i < 2; ++i) {
+            const int k = (axis + 1 + i) % 3;
+            target[k] = grid_coordinate(static_cast<std::uint32_t>(number >> 32U * static_cast<unsigned>(i)), target[k],
+                                        0x1p-10 * frame.scale * extent,
+                                        std::max({std::abs(first[k]), std::abs(last[k]), std::abs(target[k])}));
         }
     }
-    // Out of range: everything is decided exactly, and the grid lies in a plane without the start.
+    if (!is_finite(target)) return false;
+    aim_at(target);
+    const double reached = image_of_target_[axis], error = 4 * error_[axis];
+    return is_bounded_ && (is_up ? reached - error > high[axis] : reached + error < low[axis]);
+}
+
+/// Aims out of the range in which floats decide, at a grid in a plane without the start.
+void parity_ray::aim_far_away(std::uint64_t attempt) {
     double height = 0x1p1000;
     const vec3d origin{height, 0, 0}, side{height, 1, 0}, top{height, 0, 1};
     const exact_corners corners({{{&vertex_, &pose_of_vertex_},
@@ -111,15 +129,21 @@ void parity_ray::aim(std::uint64_t attempt) {
                                   {&top, &pose_of_surface_},
                                   {&top, &pose_of_surface_}}});
     if (corners.side(1, 2, 3, 0) == 0) height = -height;
-    const auto coordinate = [](std::uint32_t i) { return (static_cast<double>(i) - 0x1p31) * 0x1p960; };
-    aim_at({height, coordinate(grid_point[0]), coordinate(grid_point[1])});
+    const std::uint64_t number = scattered(attempt);
+    const auto coordinate = [](std::uint64_t i) {
+        return (static_cast<double>(static_cast<std::uint32_t>(i)) - 0x1p31) * 0x1p960;
+    };
+    aim_at({height, coordinate(number), coordinate(number >> 32U)});
     is_bounded_ = false;
+    reach_ = boundless();
 }
 
+/// The ray lies in the box of both ends, up to the error of these and of corners on each axis.
 void parity_ray::aim_at(const vec3d& target) {
     assert(is_finite(target));
     target_ = target;
     is_bounded_ = image_.has_value();
+    reach_ = boundless();
     if (!image_) return;
     const vertex_frame& frame = surface_->frame;
     for (int k = 0; k < 3; ++k) {
@@ -128,30 +152,13 @@ void parity_ray::aim_at(const vec3d& target) {
         error_[k] = image_error_[k] + 0x1p-51 * std::abs(image_of_target_[k]) + 0x1p-1070;
         is_bounded_ = is_bounded_ && std::abs(image_of_target_[k]) < 0x1p200;
     }
-}
-
-/// Tests for an axis that separates the segment up to the target from the box (Ericson, "Real-time collision
-/// detection", 2005, section 5.3.3). The margin of the box covers the errors of both ends and of the corners, and the
-/// rounding of the box's centre and extents, of the segment's centre and extents, each below 2^-51 of the magnitudes;
-/// a relative 2^-48 covers that of the products.
-bool parity_ray::may_meet(const box& b) const noexcept {
-    if (!is_bounded_) return true;
-    vec3d from{}, half{}, half_way{};
+    if (!is_bounded_) return;
+    constexpr float infinity = std::numeric_limits<float>::infinity();
     for (int k = 0; k < 3; ++k) {
-        const double low = b.min[k], high = b.max[k], start = (*image_)[k], end = image_of_target_[k];
-        const double magnitude = std::abs(low) + std::abs(high) + std::abs(start) + std::abs(end);
-        half[k] = (high - low) / 2 + 2 * error_[k] + 0x1p-48 * magnitude;
-        half_way[k] = (end - start) / 2;
-        from[k] = (start + end) / 2 - (low + high) / 2;
-        if (std::abs(from[k]) > (half[k] + std::abs(half_way[k])) * (1 + 0x1p-48)) return false;
+        const auto [low, high] = std::minmax((*image_)[k], image_of_target_[k]);
+        reach_.min[k] = rounded_towards(low - 2 * error_[k], -infinity);
+        reach_.max[k] = rounded_towards(high + 2 * error_[k], infinity);
     }
-    for (int k = 0; k < 3; ++k) {
-        const int x = (k + 1) % 3, y = (k + 2) % 3;
-        const double p = from[x] * half_way[y], q = from[y] * half_way[x];
-        const double radius = half[x] * std::abs(half_way[y]) + half[y] * std::abs(half_way[x]);
-        if (std::abs(p - q) > radius + 0x1p-48 * (std::abs(p) + std::abs(q) + radius) + 0x1p-1000) return false;
-    }
-    return true;
 }
 
 ray_crossing parity_ray::crossing(std::uint32_t triangle) const noexcept {

@@ -20,7 +20,7 @@ enum class ray_crossing : std::uint8_t {
 ///
 /// The ray passes a second point, the target, so that orientations of given points decide everything: its line crosses
 /// a triangle if it passes all edges on one side. Attempt 0 aims along an axis; each further one at another point of a
-/// grid of 2^32 by 2^32 points in a plane.
+/// grid of 2^32 by 2^32 points in a plane, around the target of attempt 0.
 ///
 /// Some attempt succeeds. An edge makes a ray unclear only if its plane through the start contains the target; if the
 /// start lies in the plane of a triangle, an edge of it that does not point to the start spans the same plane. Such a
@@ -51,12 +51,14 @@ public:
     /// @param target in the coordinates of the surface's vertices, not where the ray starts
     void aim_at(const vec3d& target);
 
-    /// False if the ray certainly has no point in common with triangles whose floats lie in the box.
-    [[nodiscard]] bool may_meet(const box& b) const noexcept;
+    /// A box that overlaps that of the floats of each triangle which the ray meets before the target.
+    [[nodiscard]] const box& reach() const noexcept { return reach_; }
 
     [[nodiscard]] ray_crossing crossing(std::uint32_t triangle) const noexcept;
 
 private:
+    [[nodiscard]] bool aim_beyond_box(std::uint64_t attempt);
+    void aim_far_away(std::uint64_t attempt);
     [[nodiscard]] std::optional<ray_crossing> certain_crossing(std::uint32_t triangle) const noexcept;
     [[nodiscard]] ray_crossing exact_crossing(std::uint32_t triangle) const noexcept;
 
@@ -71,6 +73,7 @@ private:
     vec3d image_of_target_{};
     vec3d error_{};            // of the images of both points, and of the corners
     bool is_bounded_ = false;  // whether the images are in range, and the ray leaves the box before the target
+    box reach_{};
 };
 
 }  // namespace aabb

@@ -5,6 +5,7 @@ export import :model;
 export import :policies;
 export import :tree_validation;
 export import :triangle_query;
+export import :triangles_in_box;
 
 export import aabb.counters;
 export import aabb.geometry;

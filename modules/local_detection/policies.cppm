@@ -124,7 +124,8 @@ concept BalancedTree = requires(T tree, const mesh& m, const balanced_order& ord
 /// cursor refers to a node; its content is private to the layout. `bounds(cursor)` is a box that contains the node's
 /// triangles; for a leaf in a layout without leaf boxes, it is the parent's box, or what `leaf_test()` requires.
 /// `refit` takes the same mesh after its vertices have moved, and uses the boxes as scratch memory. Trees are traversed
-/// by `depth_first_walk` unless a layout declares `template <class Triangle, class Counters> using walk`.
+/// by `depth_first_walk` unless a layout declares `template <class Triangle, class Counters> using walk`, and searched
+/// by `each_triangle_in`.
 template <class T>
 concept TreePolicy =
     Strategy<T> && (BalancedTree<T> || requires(T tree, std::span<const build_node> nodes) { tree.pack(nodes); }) &&

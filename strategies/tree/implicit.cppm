@@ -156,6 +156,11 @@ public:
         return range;
     }
     [[nodiscard]] inline std::uint32_t triangle(const cursor& at) const noexcept { return triangle_at(at.index); }
+    /// As `aabb::each_triangle_in`.
+    template <class Take>
+    void each_triangle_in(const mesh& m, const box& region, const Take& take) const {
+        each_triangle_in_box(*this, m, region, take);
+    }
     [[nodiscard]] tree_bytes bytes() const noexcept {
         return {bytes_of(nodes_), bytes_of(packed_indices_) + vertices_.bytes()};
     }

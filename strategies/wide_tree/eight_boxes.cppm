@@ -63,6 +63,18 @@ struct quantized_aabbs {
         return mask;
     }
 
+    /// The same for one box: sets bit i where box i may overlap it.
+    [[nodiscard]] inline std::uint32_t overlaps(const code_grid& grid, const box& other) const noexcept {
+        const auto [sx, sy, sz] = grid.scale;
+        const auto [ox, oy, oz] = grid.offset;
+        const simd::eight_floats bounds{
+            other.max[0], other.max[1], other.max[2], other.min[0], other.min[1], other.min[2], 0, 0};
+        const simd::eight_floats scale{sx, sy, sz, sx, sy, sz, 0, 0}, offset{ox, oy, oz, ox, oy, oz, 0, 0};
+        const simd::eight_floats on_grid = bounds * scale - offset;
+        return simd::columns_no_greater(lower[0].data(), simd::whole_bytes(__builtin_shufflevector(
+                                                             on_grid, 255 - on_grid, 0, 1, 2, 11, 12, 13, 6, 7)));
+    }
+
     /// Empties the boxes from `count` on.
     inline void keep_first(std::size_t count) noexcept {
         for (std::size_t i = count; i < eight_boxes::most; ++i)

@@ -203,6 +203,25 @@ export namespace aabb::simd {
     return __builtin_bit_cast(std::uint64_t, __builtin_convertvector(is_no_greater, bools));
 }
 
+/// Compares six rows of eight numbers with one number per row: sets bit i where number i of each row is at most that.
+/// @param most of the rows, in their order; two more are not used
+[[nodiscard, gnu::always_inline]] inline std::uint32_t columns_no_greater(const std::uint8_t* rows,
+                                                                          eight_bytes most) noexcept {
+    using bytes = std::uint8_t __attribute__((vector_size(64)));
+    using signed_bytes = std::int8_t __attribute__((vector_size(64)));
+    using bools = bool __attribute__((ext_vector_type(64)));
+    bytes left{};  // zeros in two more rows, which are no greater than anything
+    std::memcpy(&left, rows, 48);
+    constexpr auto eight_times = [](std::size_t i) { return i / 8; };
+    const auto right = shuffled<bytes, eight_times>(most, most, std::make_index_sequence<64>{});
+    const signed_bytes is_no_greater = left <= right;
+    auto columns = __builtin_bit_cast(std::uint64_t, __builtin_convertvector(is_no_greater, bools));
+    columns &= columns >> 32U;
+    columns &= columns >> 16U;
+    columns &= columns >> 8U;
+    return static_cast<std::uint32_t>(columns & 0xffU);
+}
+
 /// Sets bit 8 j + i where column i of `a` and column j of `b` share a number; both have three rows of eight.
 [[nodiscard, gnu::always_inline]] inline std::uint64_t columns_with_shared_number(const std::uint32_t* a,
                                                                                   const std::uint32_t* b) noexcept {

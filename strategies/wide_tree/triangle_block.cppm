@@ -45,6 +45,17 @@ struct triangle_block {
         return rows;
     }
 
+    /// Sets bit i where the box of triangle i overlaps another one.
+    [[nodiscard]] inline std::uint32_t triangles_in(const box& b) const noexcept {
+        const std::array<simd::eight_floats, 6> rows = bounds();
+        auto overlap = (rows[0] <= b.max[0]) & (rows[3] >= b.min[0]);
+        for (int k = 1; k < 3; ++k) {
+            const auto axis = static_cast<std::size_t>(k);
+            overlap &= (rows[axis] <= b.max[k]) & (rows[3 + axis] >= b.min[k]);
+        }
+        return simd::bits_of_eight(overlap) & (0xffU >> (width - triangles));
+    }
+
 private:
     using columns = std::array<simd::eight_floats, 3>;
 

@@ -38,6 +38,10 @@ struct wide_node {
         return g;
     }
 
+    /// Sets bit i where the box of child i overlaps another one, and perhaps where it does not: floats are rounded to
+    /// codes.
+    [[nodiscard]] inline std::uint32_t children_in(const box& b) const noexcept { return planes.overlaps(grid(), b); }
+
     /// Decodes the box of child i. Upper codes are stored as 255 - code.
     [[nodiscard]] inline box child(std::size_t i) const noexcept {
         box b;

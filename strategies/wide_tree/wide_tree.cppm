@@ -4,6 +4,7 @@ export module aabb.wide_tree;
 
 export import aabb.wide_tree.front_walk;
 export import aabb.wide_tree.gap_walk;
+export import aabb.wide_tree.triangles_in_box;
 export import aabb.wide_tree.wide_node;
 
 import aabb.std;

@@ -1,3 +1,5 @@
+#include <random>
+
 #include "../testing.hpp"
 
 import aabb.columns.kernels;
@@ -104,6 +106,26 @@ TEST_CASE("eight numbers are permuted, converted to bytes and compared each with
     const std::uint64_t no_greater = simd::pairs_no_greater(a.data(), whole);
     for (unsigned j = 0; j < 8; ++j)
         for (unsigned i = 0; i < 8; ++i) REQUIRE((no_greater >> (8 * j + i) & 1U) == (a[i] <= whole[j] ? 1U : 0U));
+}
+
+TEST_CASE("the columns of six rows are found whose numbers are no greater than those of the rows") {
+    std::mt19937 random(58);
+    std::array<std::uint8_t, 48> rows;
+    for (int repeat = 0; repeat < 1000; ++repeat) {
+        // Small or large numbers, so that many are equal.
+        const auto number = [&] { return static_cast<std::uint8_t>((random() & 1U) * 252 + (random() & 3U)); };
+        std::ranges::generate(rows, number);
+        simd::eight_bytes most{};
+        for (int r = 0; r < 6; ++r) most[r] = static_cast<std::uint8_t>(repeat % 2 == 0 ? 255 : number());
+        most[repeat % 6] = number();
+        std::uint32_t expected = 0;
+        for (unsigned i = 0; i < 8; ++i) {
+            bool is_no_greater = true;
+            for (unsigned r = 0; r < 6; ++r) is_no_greater &= rows[8 * r + i] <= most[static_cast<int>(r)];
+            expected |= static_cast<std::uint32_t>(is_no_greater) << i;
+        }
+        REQUIRE(simd::columns_no_greater(rows.data(), most) == expected);
+    }
 }
 
 TEST_CASE("conversion to 16-bit integers is monotone") {

@@ -1,3 +1,5 @@
+#include <random>
+
 #include "../compositions.hpp"
 #include "../meshes.hpp"
 
@@ -21,6 +23,10 @@ mesh sheet(std::uint32_t n) {
 
 void for_each_build(const auto& check) {
     [&]<class... Builds>(type_list<Builds...>) { (check(Builds{}), ...); }(builds{});
+}
+
+void for_each_tree(const auto& check) {
+    [&]<class... Trees>(type_list<Trees...>) { (check(type_list<Trees>{}), ...); }(trees{});
 }
 
 /// The content of a node.
@@ -129,6 +135,44 @@ bool same_nodes(const implicit_tree& a, const implicit_tree& b) {
     return bytes == b.bytes().nodes && a.levels() == b.levels() && std::memcmp(a.level(0), b.level(0), bytes) == 0;
 }
 
+/// Boxes within another one, some of them flat, one around it, one at its corner, and one far away.
+std::vector<box> regions_of(const box& whole) {
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    std::vector<box> regions{whole, {whole.max, whole.max}, {{1e30F, 0, 0}, {1e30F, 1, 1}}};
+    regions.push_back({{-infinity, 0, 0}, {infinity, 1, 1}});
+    std::mt19937 random(57);
+    for (int i = 0; i < 30; ++i) {
+        box region;
+        for (int k = 0; k < 3; ++k) {
+            const auto part = [&] { return static_cast<float>(random()) * 0x1p-32F * (whole.max[k] - whole.min[k]); };
+            region.min[k] = whole.min[k] + part();
+            region.max[k] = region.min[k] + (i % 3 == k ? 0 : part() / 4);
+        }
+        regions.push_back(region);
+    }
+    return regions;
+}
+
+template <class Tree>
+void check_triangles_in_boxes(const model<Tree>& m) {
+    for (const box& region : regions_of(bounds_of(m.triangles()))) {
+        std::vector<std::uint32_t> expected, found;
+        for (std::uint32_t t = 0; t < m.triangles().triangle_count(); ++t)
+            if (overlaps(bounds_of(m.triangles().triangle(t)), region)) expected.push_back(t);
+        each_triangle_in(m, region, [&](std::uint32_t t) {
+            found.push_back(t);
+            return false;
+        });
+        std::ranges::sort(found);
+        CHECK(std::ranges::adjacent_find(found) == found.end());
+        CHECK(std::ranges::includes(found, expected));
+        if constexpr (WideTreePolicy<Tree>) CHECK(found == expected);
+        std::size_t taken = 0;
+        each_triangle_in(m, region, [&](std::uint32_t) { return ++taken == 1; });
+        CHECK(taken == std::min<std::size_t>(1, found.size()));
+    }
+}
+
 std::tuple<std::uint32_t, std::array<std::uint32_t, 3>, std::vector<std::uint32_t>> parts_of(const vertex_list& list) {
     return {list.count, list.positions, {list.vertices.begin(), list.vertices.begin() + list.count}};
 }
@@ -146,6 +190,27 @@ TEST_CASE("a tree holds every triangle once, has the least depth if balanced, an
             stage->refit(0);
             check(*stage, tree, m);
             CHECK(tree_bytes_of(*stage) == bytes);
+        }
+}
+
+TEST_CASE("through every tree, each triangle whose box overlaps another box is found once, also after a refit") {
+    for (const mesh& m : {sheet(9), sheet(40), equal_triangles(3), equal_triangles(1000), receding(500), nested(70),
+                          strip(1), strip(8), strip(9)})
+        for (const strategy_choice& tree : all_choices(strategy_kind::tree)) {
+            CAPTURE(to_text(tree), m.triangle_count());
+            bool is_checked = false;
+            for_each_tree([&]<class Tree>(type_list<Tree>) {
+                if (Tree::name != tree.name) return;
+                mesh moved = m;
+                model of_mesh(moved, median_build(), make_strategy<Tree>(configured<Tree>(tree.settings)));
+                check_triangles_in_boxes(of_mesh);
+                deform(moved);
+                std::vector<box> boxes;
+                of_mesh.refit(boxes);
+                check_triangles_in_boxes(of_mesh);
+                is_checked = true;
+            });
+            CHECK(is_checked);
         }
 }
 

@@ -505,6 +505,40 @@ TEST_CASE("a wide node contains its children's boxes, of any size and in any pla
     }));
 }
 
+TEST_CASE("all children of a wide node whose boxes overlap another box are found, and none a step from it") {
+    std::size_t inside = 0, outside = 0;
+    REQUIRE(rc::check([&] {
+        const std::vector<box> boxes = any_boxes();
+        wide_node n{};
+        n.encode(boxes);
+        std::vector<box> regions = any_boxes();
+        for (const box& b : boxes) {
+            // At a corner of the box, and beyond it by little.
+            regions.push_back({b.max, b.max});
+            box beside{b.min, b.min};
+            const int k = *rc::gen::inRange(0, 3);
+            beside.min[k] = beside.max[k] = std::nextafter(b.min[k], -std::numeric_limits<float>::max());
+            regions.push_back(beside);
+        }
+        for (const box& region : regions) {
+            const std::uint32_t found = n.children_in(region);
+            RC_ASSERT(found >> boxes.size() == 0U);
+            for (std::size_t i = 0; i < boxes.size(); ++i) {
+                const bool is_found = (found >> i & 1U) != 0;
+                if (overlaps(n.child(i), region)) RC_ASSERT(is_found);
+                for (int k = 0; k < 3 && is_found; ++k) {
+                    const double step = n.step(static_cast<std::size_t>(k));
+                    RC_ASSERT(double{region.min[k]} - n.child(i).max[k] < step);
+                    RC_ASSERT(double{n.child(i).min[k]} - region.max[k] < step);
+                }
+                ++(is_found ? inside : outside);
+            }
+        }
+    }));
+    CHECK(inside > 100);
+    CHECK(outside > 100);
+}
+
 TEST_CASE("overlapping children are found under any rotation of the nodes") {
     std::size_t overlapping = 0;
     std::size_t separate = 0;

@@ -378,7 +378,7 @@ TEST_CASE("a ray crosses a triangle in its inside, or is unclear at an edge") {
         std::map<ray_crossing, int> counts;
         for (std::uint32_t t = 0; t < cube.triangle_count(); ++t) {
             const ray_crossing crossing = ray.crossing(t);
-            if (crossing != ray_crossing::none) CHECK(ray.may_meet(bounds_of(cube.triangle(t))));
+            if (crossing != ray_crossing::none) CHECK(overlaps(ray.reach(), bounds_of(cube.triangle(t))));
             ++counts[crossing];
         }
         return counts;
@@ -473,7 +473,7 @@ TEST_CASE("a ray whose start is known by floats decides as one without them, nea
             RC_ASSERT(filtered.crossing(t) == crossing);
             // Boxes count up to the target only, which here is farther away than any triangle.
             if (beyond > 2 && distance > 0.01 && (crossing == ray_crossing::leaves || crossing == ray_crossing::enters))
-                RC_ASSERT(filtered.may_meet(bounds_of(m.triangle(t))));
+                RC_ASSERT(overlaps(filtered.reach(), bounds_of(m.triangle(t))));
         }
     }));
     CHECK(counts[ray_crossing::none] > 20);
