@@ -22,7 +22,7 @@ void reject_value() {
 
 /// Runs the micro-benchmarks that the command line selects, all of them by default, on the least busy processor.
 int main(int argc, char** argv) {
-    // The default makes all benchmarks take about 90 s; a time on the command line follows and overrides it.
+    // The default makes all benchmarks take about 100 s; a time on the command line follows and overrides it.
     char min_time[] = "--benchmark_min_time=" AABBLAB_MIN_TIME;
     std::vector<char*> arguments(argv, argv + argc);
     arguments.insert(arguments.begin() + 1, min_time);

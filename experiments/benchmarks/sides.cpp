@@ -8,7 +8,7 @@
 import aabb.build.median;
 import aabb.containment;
 import aabb.std;
-import aabb.tree.canonical;
+import aabb.tree.implicit;
 import aabblab.scenes;
 
 namespace aabblab {
@@ -18,55 +18,69 @@ namespace {
 constexpr std::array<std::string_view, 2> sided_meshes = {"noise_sphere:triangles=20000",
                                                           "torus_knot:triangles=200000"};
 
-/// A closed surface, and points in its box.
-struct surrounded_points {
-    explicit surrounded_points(std::string_view mesh) : surface(make_mesh(mesh).mesh) {
-        constexpr std::size_t count = 4096;
-        const aabb::box bounds = bounds_of(surface);
-        std::mt19937 random(56);
-        points.resize(count);
-        for (aabb::vec3f& p : points)
-            for (int k = 0; k < 3; ++k)
-                p[k] =
-                    bounds.min[k] + (bounds.max[k] - bounds.min[k]) * (static_cast<float>(random() >> 8U) * 0x1p-24F);
+using solid = aabb::enclosure<aabb::implicit_tree>;
+
+/// The vertices of triangles without area, at random in a box.
+aabb::mesh points_in(const aabb::box& bounds) {
+    constexpr std::uint32_t count = 4096;
+    std::mt19937 random(56);
+    aabb::mesh points;
+    for (std::uint32_t v = 0; v < count; ++v) {
+        aabb::vec3f p{};
+        for (int k = 0; k < 3; ++k)
+            p[k] = bounds.min[k] + (bounds.max[k] - bounds.min[k]) * (static_cast<float>(random() >> 8U) * 0x1p-24F);
+        points.vertices.push_back(p);
+        points.triangles.push_back({v, v, v});
     }
+    return points;
+}
+
+std::vector<cgal_side::point> for_cgal(const aabb::mesh& m) {
+    std::vector<cgal_side::point> points;
+    for (const aabb::vec3f& v : m.vertices) points.push_back({v[0], v[1], v[2]});
+    return points;
+}
+
+/// A closed surface, and points in its box as both methods take them.
+struct surrounded_points {
+    explicit surrounded_points(std::string_view mesh) : surface(make_mesh(mesh).mesh) {}
+    surrounded_points(const surrounded_points&) = delete;  // since `points_as_mesh` refers to `points`
 
     aabb::mesh surface;
-    std::vector<aabb::vec3f> points;
+    aabb::mesh points = points_in(bounds_of(surface));
+    solid points_as_mesh{points, aabb::median_build{}};
+    std::vector<cgal_side::point> points_for_cgal = for_cgal(points);
 };
 
-/// Whether a point lies inside, by a ray of `enclosure`.
+/// Whether a vertex lies inside, as `relation_of` decides in `collide`.
 class enclosed_side {
 public:
-    explicit enclosed_side(const aabb::mesh& surface) : solid_(surface, aabb::median_build{}) {}
+    explicit enclosed_side(const surrounded_points& given)
+        : solid_(given.surface, aabb::median_build{}), rays_(given.points_as_mesh, {}, solid_, {}) {}
 
-    [[nodiscard]] bool is_inside(const aabb::vec3f& p) const {
-        aabb::parity_ray ray(solid_.triangles(), {}, solid_.surface().bounds(), aabb::in_double(p), {});
-        ray.set_image(p, {0, 0, 0});
+    [[nodiscard]] bool is_inside(std::uint32_t vertex) const {
+        const aabb::parity_ray ray = rays_(vertex);
         if (ray.starts_outside()) return false;
         const auto around = solid_.around(ray, [](std::uint32_t) { return true; });
         return around && around->side() == aabb::solid_side::inside;
     }
 
 private:
-    aabb::enclosure<aabb::canonical_tree> solid_;
+    solid solid_;
+    aabb::vertex_rays<aabb::implicit_tree> rays_;
 };
 
 /// The same by CGAL.
 class side_by_cgal {
 public:
-    explicit side_by_cgal(const aabb::mesh& surface) : side_(points_of(surface), surface.triangles) {}
+    explicit side_by_cgal(const surrounded_points& given)
+        : side_(for_cgal(given.surface), given.surface.triangles), points_(&given.points_for_cgal) {}
 
-    [[nodiscard]] bool is_inside(const aabb::vec3f& p) const { return side_.is_inside({p[0], p[1], p[2]}); }
+    [[nodiscard]] bool is_inside(std::uint32_t vertex) const { return side_.is_inside((*points_)[vertex]); }
 
 private:
-    [[nodiscard]] static std::vector<cgal_side::point> points_of(const aabb::mesh& surface) {
-        std::vector<cgal_side::point> points;
-        for (const aabb::vec3f& v : surface.vertices) points.push_back({v[0], v[1], v[2]});
-        return points;
-    }
-
     cgal_side side_;
+    const std::vector<cgal_side::point>* points_;
 };
 
 /// Adds the benchmarks of one method: `build` is up to the result for the first point, for which CGAL builds its tree.
@@ -79,26 +93,27 @@ void add(const std::string& method) {
         benchmark::RegisterBenchmark(name("build").c_str(), [mesh](benchmark::State& state) {
             const surrounded_points given(mesh);
             for ([[maybe_unused]] const auto& ignored : state) {
-                const Side side(given.surface);
-                benchmark::DoNotOptimize(side.is_inside(given.points[0]));
+                const Side side(given);
+                benchmark::DoNotOptimize(side.is_inside(0));
             }
         })->Unit(benchmark::kMillisecond);
         benchmark::RegisterBenchmark(name("query").c_str(), [mesh](benchmark::State& state) {
             const surrounded_points given(mesh);
-            const Side side(given.surface);
-            const Other other(given.surface);
-            std::size_t inside = 0;
-            for (const aabb::vec3f& p : given.points) {
-                if (side.is_inside(p) != other.is_inside(p))
+            const Side side(given);
+            const Other other(given);
+            const auto count = static_cast<std::uint32_t>(given.points.vertices.size());
+            std::uint32_t inside = 0;
+            for (std::uint32_t v = 0; v < count; ++v) {
+                if (side.is_inside(v) != other.is_inside(v))
                     throw std::logic_error("the library and CGAL disagree about what lies inside");
-                inside += side.is_inside(p);
+                inside += side.is_inside(v);
             }
-            std::size_t at = 0;
+            std::uint32_t vertex = 0;
             for ([[maybe_unused]] const auto& ignored : state) {
-                if (++at == given.points.size()) at = 0;
-                benchmark::DoNotOptimize(side.is_inside(given.points[at]));
+                if (++vertex == count) vertex = 0;
+                benchmark::DoNotOptimize(side.is_inside(vertex));
             }
-            state.counters["inside"] = static_cast<double>(inside) / static_cast<double>(given.points.size());
+            state.counters["inside"] = static_cast<double>(inside) / count;
         });
     }
 }
