@@ -108,6 +108,17 @@ auto timed(const Call& call) {
     return std::pair(result, watch.ms());
 }
 
+/// The time of a search that appends its pairs, which are sorted afterwards.
+template <class Search>
+double time_search(std::vector<aabb::index_pair>& pairs, const Search& search) {
+    pairs.clear();
+    const wall_stopwatch watch;
+    search();
+    const double ms = watch.ms();
+    std::ranges::sort(pairs);
+    return ms;
+}
+
 /// Times both distances at each pose in turn, and counts how many of the peer's are beyond our bounds by more than
 /// their rounding.
 void time_distances(benchmark::State& state, const distance_peer& peer, const mesh_names& names) {
@@ -135,15 +146,16 @@ void time_distances(benchmark::State& state, const distance_peer& peer, const me
     state.counters["worst"] = worst;
 }
 
-/// Times counts of the pairs within a fiftieth of the meshes' size beyond their distance.
-/// @throws std::logic_error if they differ
+/// Times searches for the pairs within a fiftieth of the meshes' size beyond their distance.
+/// @throws std::logic_error if the sets of pairs differ
 void time_within(benchmark::State& state, const distance_peer& peer, const mesh_names& names) {
     const disjoint_meshes meshes(names.a, names.b);
     aabb::distance_detection<aabb::sah_build, aabb::implicit_tree> distances;
     distances.add_model(meshes.a);
     distances.add_model(meshes.b);
-    const distance_peer::count theirs = peer.within(meshes.a, meshes.b);
+    const distance_peer::search theirs = peer.within(meshes.a, meshes.b);
     turns taken;
+    std::vector<aabb::index_pair> expected, found;
     double pairs = 0;
     for ([[maybe_unused]] const auto& ignored : state) {
         const double before = taken.theirs_ms;
@@ -153,14 +165,16 @@ void time_within(benchmark::State& state, const distance_peer& peer, const mesh_
             aabb::within_detection<aabb::sah_build, aabb::implicit_tree> ours(d);
             ours.add_model(meshes.a);
             ours.add_model(meshes.b);
-            static_cast<void>(ours.count_pairs(0, {}, 1, at));  // its buffers grow
-            const auto [count, our_ms] = timed([&] { return ours.count_pairs(0, {}, 1, at); });
-            const auto [their_count, their_ms] = timed([&] { return theirs(at, d); });
-            if (their_count != count)
-                throw std::logic_error(peer.name + " finds " + std::to_string(their_count) +
-                                       " pairs within a distance, not " + std::to_string(count));
+            const auto search = [&] { ours.all_pairs(0, {}, 1, at, expected); };
+            static_cast<void>(time_search(expected, search));  // buffers grow
+            found.reserve(expected.size());
+            const double our_ms = time_search(expected, search);
+            const double their_ms = time_search(found, [&] { theirs(at, d, found); });
+            if (found != expected)
+                throw std::logic_error(peer.name + " finds other pairs within a distance: " +
+                                       std::to_string(found.size()) + ", not " + std::to_string(expected.size()));
             taken.add(our_ms, their_ms);
-            pairs += static_cast<double>(count);
+            pairs += static_cast<double>(expected.size());
         }
         state.SetIterationTime((taken.theirs_ms - before) / 1000 / static_cast<double>(meshes.poses_of_b().size()));
     }

@@ -38,7 +38,7 @@ void add_posed_triangle_benchmarks();
 /// Distances of two meshes, and pairs of triangles within a distance, in turn with those of other libraries: the time
 /// is that of a query of theirs, `ours_ms` and `ratio` (theirs to ours) are medians over the poses. `wrong` is the
 /// share of their distances that are off by more than our error and 1e-12 of the size of the meshes, `worst` by how
-/// much, relative to that size; `pairs` is the number of pairs, which are the same. "distance/fcl/knots",
+/// much, relative to that size; `pairs` is the number of pairs, whose sets are the same. "distance/fcl/knots",
 /// "within/embree/bunnies"
 void add_distance_benchmarks();
 

@@ -76,18 +76,18 @@ distance_peer cgal_distances() {
     };
     // Boxes around the triangles of B leave pairs that our test decides. (A Sphere_3 has no interior: triangles inside
     // do not intersect it.)
-    const auto within = [](const aabb::mesh& a, const aabb::mesh& b) -> distance_peer::count {
-        return [of_a = std::make_shared<mesh_tree>(a), &b](const aabb::pose& at, double d) {
-            std::uint64_t count = 0;
+    const auto within = [](const aabb::mesh& a, const aabb::mesh& b) -> distance_peer::search {
+        return [of_a = std::make_shared<mesh_tree>(a), &b](const aabb::pose& at, double d,
+                                                           std::vector<aabb::index_pair>& pairs) {
             const aabb::pose_pair poses{{}, at};
             for (std::uint32_t t = 0; t < b.triangle_count(); ++t) {
                 const aabb::triangle3d given = b.given_triangle(t);
                 of_a->each_near({{moved(at, given[0]), moved(at, given[1]), moved(at, given[2])}}, d,
                                 [&](std::uint32_t s) {
-                                    count += aabb::are_within(poses, of_a->mesh().given_triangle(s), given, d);
+                                    if (aabb::are_within(poses, of_a->mesh().given_triangle(s), given, d))
+                                        pairs.push_back({s, t});
                                 });
             }
-            return count;
         };
     };
     return {.name = "cgal", .distance = distance, .within = within};

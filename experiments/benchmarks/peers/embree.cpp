@@ -109,21 +109,20 @@ distance_peer embree_distances() {
         };
     };
     // Balls around the triangles of B leave pairs that our test decides.
-    const auto within = [](const aabb::mesh& a, const aabb::mesh& b) -> distance_peer::count {
-        return [of_a = std::make_shared<mesh_scene>(a), &b](const aabb::pose& at, double d) {
-            std::uint64_t count = 0;
+    const auto within = [](const aabb::mesh& a, const aabb::mesh& b) -> distance_peer::search {
+        return [of_a = std::make_shared<mesh_scene>(a), &b](const aabb::pose& at, double d,
+                                                            std::vector<aabb::index_pair>& pairs) {
             const aabb::pose_pair poses{{}, at};
             for (std::uint32_t t = 0; t < b.triangle_count(); ++t) {
                 const aabb::triangle3d given = b.given_triangle(t);
                 const triangle_ball ball(
                     aabb::triangle3d{{moved(at, given[0]), moved(at, given[1]), moved(at, given[2])}});
                 auto visit = [&](std::uint32_t s, float& /*radius*/) {
-                    count += aabb::are_within(poses, of_a->mesh().given_triangle(s), given, d);
+                    if (aabb::are_within(poses, of_a->mesh().given_triangle(s), given, d)) pairs.push_back({s, t});
                     return false;
                 };
                 of_a->each_near(ball.centre, ball.radius + d, visit);
             }
-            return count;
         };
     };
     return {.name = "embree", .distance = distance, .within = within};

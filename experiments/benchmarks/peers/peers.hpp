@@ -10,12 +10,12 @@ namespace aabblab {
 struct distance_peer {
     /// Measures the distance.
     using measurement = std::function<double(const aabb::pose& of_b)>;
-    /// Counts the pairs of triangles at a distance of at most d.
-    using count = std::function<std::uint64_t(const aabb::pose& of_b, double d)>;
+    /// Appends the pairs of triangles, a of A and b of B, at a distance of at most d, in any order.
+    using search = std::function<void(const aabb::pose& of_b, double d, std::vector<aabb::index_pair>& pairs)>;
 
     std::string name;
     std::function<measurement(const aabb::mesh& a, const aabb::mesh& b)> distance;
-    std::function<count(const aabb::mesh& a, const aabb::mesh& b)> within = nullptr;  ///< null if it has none
+    std::function<search(const aabb::mesh& a, const aabb::mesh& b)> within = nullptr;  ///< null if it has none
 };
 
 // Each is defined where its library is installed.
