@@ -115,6 +115,15 @@ inline std::vector<aabb::composition> exact_local_compositions() {
     return compositions;
 }
 
+/// The default narrow phase with each tree, for what does not depend on the triangle test.
+inline std::vector<aabb::composition> compositions_of_every_tree() {
+    std::vector<aabb::composition> compositions;
+    for (const aabb::strategy_choice& tree : all_choices(aabb::strategy_kind::tree))
+        compositions.emplace_back()[aabb::strategy_kind::tree] = tree;
+    std::erase_if(compositions, [](const aabb::composition& c) { return !is_exact_locally(c); });
+    return compositions;
+}
+
 /// These strategies, as on the command line, and those that complete them: `composed({{kind::sort, "shell"}})`.
 inline aabb::composition composed(std::initializer_list<std::pair<aabb::strategy_kind, const char*>> choices) {
     aabb::named_strategies named;

@@ -130,8 +130,15 @@ struct named_candidate {
 std::vector<named_candidate> candidates(aabb::stage stage, bool named_values) {
     const bool meshes = stage == aabb::stage::local_detection;
     std::vector<named_candidate> list;
-    for (const aabb::composition& c : exact_compositions(stage, named_values))
+    const aabb::strategy_choice any_test = aabb::composition()[aabb::strategy_kind::triangle];
+    for (const aabb::composition& c : exact_compositions(stage, named_values)) {
         list.push_back({to_text(c, stage), candidate_role::composition, candidate_of(c, meshes)});
+        // Distances do not depend on the triangle test.
+        if (!meshes || c[aabb::strategy_kind::triangle] != any_test) continue;
+        list.push_back(list.back());
+        list.back().name += " by distance";
+        list.back().implementation.make_local = [c](aabb::instrumentation) { return compose_by_distance(c); };
+    }
     for (const aabb::engine_info& engine : aabb::engines())
         if (meshes ? engine.collides_meshes : engine.searches_boxes)
             list.push_back({engine.name, candidate_role::engine, candidate_of(engine, meshes).value()});

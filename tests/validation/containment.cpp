@@ -8,6 +8,8 @@
 #include "side_of_mesh.hpp"
 #include "support.hpp"
 
+import aabb.composed;
+import aabb.extreme;
 import aabb.strategies;
 import aabb.touching;
 import aabblab.files;
@@ -241,6 +243,45 @@ void judge_contacts(const solid& a, const pose& pose_a, const solid& b, const po
         }
     }
 }
+
+/// What components of two meshes enclose of each other, apart from those that meet, and how these lie.
+struct found_relations {
+    std::vector<index_pair> a_in_b, b_in_a;
+    std::vector<aabb::component_contact> contacts;
+
+    friend bool operator==(const found_relations&, const found_relations&) = default;
+};
+
+/// Two meshes at poses, with the pairs of their triangles that intersect.
+struct posed_meshes {
+    const mesh &a, &b;
+    pose pose_a, pose_b;
+    std::vector<index_pair> hits = hits_of(a, pose_a, b, pose_b);
+
+    template <class Tree, class Build>
+    [[nodiscard]] found_relations relations(const Tree& tree, const Build& build) const {
+        const aabb::enclosure<Tree> of_a(a, build, tree), of_b(b, build, tree);
+        aabb::contact_surface<Tree> surface_a(of_a), surface_b(of_b);
+        found_relations found;
+        found.contacts = contacts_of(surface_a, pose_a, surface_b, pose_b, hits);
+        std::vector<index_pair> meeting, meeting_b;
+        for (const auto& contact : found.contacts) {
+            meeting.push_back({contact.a, contact.b});
+            meeting_b.push_back({contact.b, contact.a});
+        }
+        std::ranges::sort(meeting_b);
+        found.a_in_b = enclosed_components(of_a, pose_a, of_b, pose_b, meeting);
+        found.b_in_a = enclosed_components(of_b, pose_b, of_a, pose_a, meeting_b);
+        return found;
+    }
+    [[nodiscard]] found_relations relations(const aabb::composition& c) const {
+        using aabb::strategy_kind;
+        const auto build = aabb::composed::make_named<aabb::tree_builder>(
+            aabb::builds{}, c[strategy_kind::build], [](const auto& chosen) { return as_tree_builder(chosen); });
+        return aabb::composed::make_named<found_relations>(aabb::trees{}, c[strategy_kind::tree],
+                                                           [&](const auto& tree) { return relations(tree, build); });
+    }
+};
 
 /// Whether a file holds triangles, and not points alone.
 bool is_surface(const std::filesystem::path& file) {
@@ -668,16 +709,46 @@ TEST_CASE("all trees agree on what a mesh encloses") {
                {static_cast<float>(i % 5) + 0.5F, static_cast<float>(i / 5 % 3) + 0.5F,
                 static_cast<float>(i % 11) + 0.3F});
     const pose at = aabb::turned({1, 2, 3}, 0.7, {0.9, 0.3, -0.2});
-    const std::vector<index_pair> expected = enclosed_components(solid_of(inner), at, solid_of(outer), at);
-    CHECK(expected.size() > 10);
-    CHECK(expected.size() < 40);
-    const auto check = [&]<class Tree>(aabb::type_list<Tree>) {
-        CAPTURE(Tree::name);
-        const aabb::enclosure<Tree> in(inner, aabb::median_build{}), out(outer, aabb::median_build{});
-        CHECK(enclosed_components(in, at, out, at) == expected);
-        CHECK(enclosed_components(in, pose{}, out, pose{}) == expected);
-    };
-    [&]<class... Trees>(aabb::type_list<Trees...>) { (check(aabb::type_list<Trees>{}), ...); }(aabb::trees{});
+    const posed_meshes turned{inner, outer, at, at}, unposed{inner, outer, {}, {}};
+    const found_relations expected = turned.relations(aabb::canonical_tree{}, aabb::median_build{});
+    CHECK(expected.a_in_b.size() > 10);
+    CHECK(expected.a_in_b.size() < 40);
+    for (const aabb::composition& c : compositions_of_every_tree()) {
+        INFO(text_of_local(c));
+        CHECK(turned.relations(c) == expected);
+        CHECK(unposed.relations(c) == expected);
+    }
+}
+
+TEST_CASE("what lies inside is what CGAL finds, on every extreme scene and through every tree") {
+    contact_judgement contacts;
+    std::size_t scenes = 0, inside = 0, outside = 0;
+    for (const aabb::extreme_scene& scene : aabb::extreme_scenes(aabb::extreme_size::small)) {
+        if (!scene.make_meshes || !scene.rejection.empty() || scene.query != aabb::extreme_query::all_pairs) continue;
+        INFO(scene.name);
+        ++scenes;
+        const std::unique_ptr<aabb::mesh_scene> frames = scene.make_meshes();
+        std::vector<pose> poses;
+        while (frames->next(poses)) {
+            const posed_meshes both{frames->meshes[frames->mesh_of[0]], frames->meshes[frames->mesh_of[1]], poses[0],
+                                    poses[1]};
+            const solid of_a = solid_of(both.a), of_b = solid_of(both.b);
+            const std::vector<index_pair> meeting = meeting_components(of_a, of_b, both.hits);
+            const judgement verdict = judge(of_a, both.pose_a, of_b, both.pose_b, meeting);
+            CHECK(verdict.wrong == 0);
+            inside += verdict.inside;
+            outside += verdict.outside;
+            judge_contacts(of_a, both.pose_a, of_b, both.pose_b, both.hits, contacts);
+            CHECK(contacts.wrong == 0);
+            const found_relations expected = both.relations(aabb::canonical_tree{}, aabb::median_build{});
+            for (const aabb::composition& c : compositions_of_every_tree()) {
+                INFO(text_of_local(c));
+                CHECK(both.relations(c) == expected);
+            }
+        }
+    }
+    CHECK(scenes > 20);
+    CHECK(inside + outside > 0);
 }
 
 /// A component that has a vertex in common with a shape: the shape shrunk, but for this vertex, so that a convex one
@@ -701,6 +772,7 @@ mesh touching_copy(const mesh& shape, int way) {
 TEST_CASE("what lies inside is what CGAL finds, for made meshes at any poses") {
     const std::array<mesh, 7> shapes{aabb::unit_cube(), aabb::sphere(6),  flipped(torus(9, 6)), tetrahedron(1),
                                      cut_cube(3),       aabb::sphere(12), unwelded(torus(6, 5))};
+    const std::vector<aabb::composition> compositions = compositions_of_every_tree();
     std::size_t pairs = 0, inside = 0, outside = 0, rejected = 0, several = 0, open = 0;
     contact_judgement contacts;
     REQUIRE(rc::check([&] {
@@ -748,6 +820,10 @@ TEST_CASE("what lies inside is what CGAL finds, for made meshes at any poses") {
         judge_contacts(of_a, pose_a, of_b, pose_b, hits, contacts);
         RC_ASSERT(contacts.wrong == 0U);
         RC_ASSERT(contacts.unexplained == 0U);
+        const posed_meshes both{a, b, pose_a, pose_b, hits};
+        const aabb::composition composition = *rc::gen::elementOf(compositions);
+        RC_LOG(text_of_local(composition));
+        RC_ASSERT(both.relations(composition) == both.relations(aabb::canonical_tree{}, aabb::median_build{}));
         ++pairs;
         inside += a_in_b.inside + b_in_a.inside;
         outside += a_in_b.outside + b_in_a.outside;

@@ -59,3 +59,15 @@ TEST_CASE("every local detection is exact on every extreme scene, or rejects it 
         }
     }
 }
+
+TEST_CASE(
+    "through every tree, distances are 0 exactly where meshes meet, and right elsewhere, on every extreme scene") {
+    for (const extreme_judge& judge : judges()) {
+        if (!judge.scene().make_meshes) continue;
+        for (const aabb::composition& c : compositions_of_every_tree()) {
+            if (!c[strategy_kind::tree].settings.empty()) continue;  // for the time that they take
+            INFO(text_of_local(c));
+            require_expected(judge.scene(), judge.judge([&] { return compose_by_distance(c); }));
+        }
+    }
+}

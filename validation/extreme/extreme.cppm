@@ -2,6 +2,7 @@
 export module aabb.extreme;
 
 import aabb.pipeline;
+import aabb.registry;
 import aabb.std;
 import aabb.truth;
 
@@ -165,6 +166,11 @@ private:
     exact_boxes boxes_;    // empty in a scene of meshes and in an invalid scene
     exact_meshes meshes_;  // empty in a scene of boxes and in an invalid scene
 };
+
+/// A narrow phase of the composition's build and tree that finds pairs of triangles at a distance of 0, and rejects
+/// what the composition rejects. With `first_pair` it fails if the distance of the two meshes is not 0 where they
+/// intersect, or if elsewhere the nearest pair is not as far as that, up to its error.
+[[nodiscard]] std::unique_ptr<local_stage> compose_by_distance(const composition& c);
 
 /// Whether the result is the ground truth or, also of inexact stages, the expected rejection of an invalid scene.
 [[nodiscard]] bool is_as_expected(const extreme_scene& scene, const extreme_result& result, bool must_be_exact = true);
