@@ -796,13 +796,13 @@ TEST_CASE("what lies inside is what CGAL finds, for made meshes at any poses") {
         make(-1, parts_a);
         make(2, parts_b);
         if (*rc::gen::arbitrary<bool>())
-            parts_a.push_back(
-                touching_copy(parts_b[*rc::gen::inRange<std::size_t>(0, parts_b.size())], *rc::gen::inRange(0, 4)));
+            parts_a.push_back(touching_copy(parts_b[*rc::gen::inRange<std::size_t>(0, parts_b.size())],
+                                            *rc::gen::element(0, 1, 2, 3)));
         mesh a, b;
         for (const mesh& part : parts_a) append(a, part, 1, {0, 0, 0});
         for (const mesh& part : parts_b) append(b, part, 1, {0, 0, 0});
         pose pose_a, pose_b;
-        switch (*rc::gen::inRange(0, 4)) {
+        switch (*rc::gen::element(0, 1, 2, 3)) {
             case 0: break;
             case 1: pose_a.translation = any_vector(1); break;
             case 2: pose_a = pose_b = any_turned(any_vector(1e3)); break;
