@@ -754,7 +754,10 @@ TEST_CASE("what lies inside is what CGAL finds, on every extreme scene and throu
 /// A component that has a vertex in common with a shape: the shape shrunk, but for this vertex, so that a convex one
 /// touches it from inside in a point; shrunk towards the vertex, or mirrored at it; or the shape itself.
 mesh touching_copy(const mesh& shape, int way) {
-    const vec3f fixed = shape.vertices[*rc::gen::inRange<std::size_t>(0, shape.vertices.size())];
+    // The copy beyond an extreme vertex touches any shape there, and nowhere else.
+    const vec3f fixed =
+        way == 2 ? *std::ranges::max_element(shape.vertices, {}, [](const vec3f& v) { return v[0] + v[1] / 8; })
+                 : shape.vertices[*rc::gen::inRange<std::size_t>(0, shape.vertices.size())];
     vec3f centre{};
     for (const vec3f& v : shape.vertices)
         for (int k = 0; k < 3; ++k) centre[k] += v[k] / static_cast<float>(shape.vertices.size());
@@ -775,7 +778,7 @@ TEST_CASE("what lies inside is what CGAL finds, for made meshes at any poses") {
     const std::vector<aabb::composition> compositions = compositions_of_every_tree();
     std::size_t pairs = 0, inside = 0, outside = 0, rejected = 0, several = 0, open = 0;
     contact_judgement contacts;
-    REQUIRE(rc::check([&] {
+    const auto property = [&] {
         // Components of sizes from 1/8 to 8 around each other, on a lattice or not; some are not closed.
         const auto make = [&](int most_exponent, std::vector<mesh>& parts) {
             const int components = *rc::gen::inRange(1, 5);
@@ -797,7 +800,7 @@ TEST_CASE("what lies inside is what CGAL finds, for made meshes at any poses") {
         make(2, parts_b);
         if (*rc::gen::arbitrary<bool>())
             parts_a.push_back(touching_copy(parts_b[*rc::gen::inRange<std::size_t>(0, parts_b.size())],
-                                            *rc::gen::element(0, 1, 2, 3)));
+                                            *rc::gen::element(0, 1, 1, 1, 2, 2, 2, 3)));
         mesh a, b;
         for (const mesh& part : parts_a) append(a, part, 1, {0, 0, 0});
         for (const mesh& part : parts_b) append(b, part, 1, {0, 0, 0});
@@ -830,7 +833,9 @@ TEST_CASE("what lies inside is what CGAL finds, for made meshes at any poses") {
         rejected += a_in_b.rejected + b_in_a.rejected;
         several += of_a.parts().size() > 1 && of_b.parts().size() > 1;
         open += !of_a.is_closed() || !of_b.is_closed();
-    }));
+    };
+    // Some classes are rare: a hundred draws may have none.
+    for (int round = 0; round < 3; ++round) REQUIRE(rc::check(property));
     CAPTURE(pairs, inside, outside, rejected, several, open);
     CAPTURE(contacts.counts[contact_relation::touching], contacts.counts[contact_relation::a_inside_b],
             contacts.counts[contact_relation::b_inside_a], contacts.counts[contact_relation::equal],
