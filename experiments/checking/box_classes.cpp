@@ -274,7 +274,7 @@ void box_classes::count(const frame_errors& errors, std::span<const Box> boxes) 
         });
     else
         is_of_floats_ = false;
-    if (first_.size() < most_shown) show(errors, boxes);
+    if (first_.size() < most_shown) keep(errors, boxes);
 }
 
 /// The gap or the distance of a pair that the filter keeps.
@@ -291,14 +291,10 @@ std::string box_classes::description(const Box& a, const Box& b) const {
 
 /// Keeps the first pairs with their boxes.
 template <class Box>
-void box_classes::show(const frame_errors& errors, std::span<const Box> boxes) {
+void box_classes::keep(const frame_errors& errors, std::span<const Box> boxes) {
     errors.each([&](aabb::index_pair pair, bool is_listed) {
-        const Box &a = boxes[pair.a], &b = boxes[pair.b];
-        first_.push_back({.frame = errors.frame,
-                          .pair = pair,
-                          .is_listed = is_listed,
-                          .description = is_listed && is_left_out(pair) ? std::string(left_out) : description(a, b),
-                          .shapes = {shape_of(pair.a, a), shape_of(pair.b, b)}});
+        first_.push_back({.wrong = {.frame = errors.frame, .pair = pair, .is_listed = is_listed},
+                          .boxes = std::array{boxes[pair.a], boxes[pair.b]}});
         return first_.size() < most_shown;
     });
 }
@@ -314,7 +310,15 @@ void box_classes::add(const frame_errors& errors, const frame_boxes& boxes) {
 
 void box_classes::add_to(check_result& result) const {
     result.classes = counts_;
-    result.first = first_;
+    for (const auto& [wrong, boxes] : first_)
+        std::visit(
+            [&](const auto& both) {
+                const auto& [a, b] = both;
+                wrong_pair& w = result.first.emplace_back(wrong);
+                w.description = w.is_listed && is_left_out(w.pair) ? std::string(left_out) : description(a, b);
+                w.shapes = {shape_of(w.pair.a, a), shape_of(w.pair.b, b)};
+            },
+            boxes);
 }
 
 std::string box_classes::sentence_about_rounding() const {

@@ -38,6 +38,12 @@ public:
     [[nodiscard]] std::vector<std::string> sentences() const;
 
 private:
+    /// A pair that is described at the end.
+    struct first_pair {
+        wrong_pair wrong;
+        std::variant<std::array<aabb::box, 2>, std::array<aabb::boxd, 2>> boxes;
+    };
+
     template <class Box>
     void count(const frame_errors& errors, std::span<const Box> boxes);
     template <class Box>
@@ -49,7 +55,7 @@ private:
     template <class Box>
     void count_false_positives(std::span<const aabb::index_pair> pairs, std::span<const Box> boxes);
     template <class Box>
-    void show(const frame_errors& errors, std::span<const Box> boxes);
+    void keep(const frame_errors& errors, std::span<const Box> boxes);
     template <class Box>
     [[nodiscard]] std::string description(const Box& a, const Box& b) const;
     [[nodiscard]] double distance_of(const box_gap& g) const;
@@ -64,7 +70,7 @@ private:
     std::optional<nearness> within_;
     const aabb::collision_filter* filter_;
     std::vector<class_counts> counts_;
-    std::vector<wrong_pair> first_;
+    std::vector<first_pair> first_;
     std::uint64_t false_negatives_ = 0, false_positives_ = 0, left_out_ = 0;
     double greatest_gap_ = 0;       // of false positives
     unsigned all_gaps_ = 0;         // axes, a bit each, on which any false positive has a gap

@@ -24,7 +24,8 @@ inline constexpr std::uint32_t beyond_all = std::numeric_limits<std::uint32_t>::
 
 struct pair_list {
     std::vector<listed_pair> rows;
-    bool has_frames = false;  ///< otherwise all rows are of frame 0
+    bool has_frames = false;   ///< otherwise all rows are of frame 0
+    bool is_by_frame = false;  ///< whether rows are known to be in the order of their frames
 };
 
 /// Reads a list of pairs: text with commas, semicolons or blanks between integers, with or without a header; the array

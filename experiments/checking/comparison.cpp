@@ -12,11 +12,7 @@ std::uint64_t check_result::false_positives() const {
 
 /// Finds the rows of each frame; they are ordered by frame first, unless the list is.
 list_comparison::list_comparison(const pair_list& list, const list_extent& of)
-    : of_(of),
-      list_(list.rows),
-      is_by_frame_(std::ranges::is_sorted(list_, {}, &listed_pair::frame)),
-      begins_(of.frames + 1),
-      explanation_(of) {
+    : of_(of), list_(list.rows), is_by_frame_(list.is_by_frame), begins_(of.frames + 1), explanation_(of) {
     if (is_by_frame_) {
         for (std::size_t frame = 0; frame < begins_.size(); ++frame)
             begins_[frame] = static_cast<std::size_t>(std::ranges::lower_bound(list_, frame, {}, &listed_pair::frame) -

@@ -216,9 +216,10 @@ bool read_rows(const std::filesystem::path& file, const list_form& form, const r
 }  // namespace
 
 pair_list read_pair_list(const std::filesystem::path& file, bool may_have_frames) {
-    pair_list list;
+    pair_list list{.rows = {}, .is_by_frame = true};
     list.has_frames =
         read_rows(file, form_of_pairs(may_have_frames), [&](std::uint32_t frame, std::span<const std::uint32_t> ids) {
+            list.is_by_frame = list.is_by_frame && (list.rows.empty() || list.rows.back().frame <= frame);
             list.rows.push_back({frame, {ids[0], ids[1]}});
         });
     return list;

@@ -20,7 +20,7 @@ inline constexpr pair_key key_of;
 }
 
 /// Sorts pairs by a radix sort (Knuth, The Art of Computer Programming, 5.2.5): by the digits of b, then by those of a,
-/// each from the lowest up. Ids may be any, also such as no scene has. Keeps its memory.
+/// each from the lowest up, all counted in one pass. Ids may be any, also such as no scene has. Keeps its memory.
 class pair_sorter {
 public:
     void sort(std::span<aabb::index_pair> pairs) {
@@ -38,30 +38,31 @@ public:
             std::ranges::sort(pairs, {}, key_of);
             return;
         }
+        const auto digit_of = [=](std::uint32_t id, std::size_t digit) {
+            return id >> digit * digit_bits & (values - 1);
+        };
+        places_.assign(2 * digits * values, 0);
+        const std::span places_of_b = std::span(places_).first(digits * values);
+        const std::span places_of_a = std::span(places_).last(digits * values);
+        for (const auto [a, b] : pairs)
+            for (std::size_t digit = 0; digit < digits; ++digit) {
+                ++places_of_b[digit * values + digit_of(b, digit)];
+                ++places_of_a[digit * values + digit_of(a, digit)];
+            }
         other_.resize(pairs.size());
         std::span<aabb::index_pair> from = pairs, to = other_;
-        for (const auto id : {&aabb::index_pair::b, &aabb::index_pair::a})
-            for (std::size_t digit = 0; digit < digits; ++digit) {
-                const std::size_t shift = digit * digit_bits;
-                move_by(from, to, values,
-                        [=](const aabb::index_pair& pair) { return pair.*id >> shift & (values - 1); });
-                std::swap(from, to);
-            }
+        for (std::size_t digit = 0; digit < 2 * digits; ++digit) {
+            const std::span places = std::span(places_).subspan(digit * values, values);
+            std::exclusive_scan(places.begin(), places.end(), places.begin(), std::size_t{0});
+            const auto id = digit < digits ? &aabb::index_pair::b : &aabb::index_pair::a;
+            for (const aabb::index_pair& pair : from) to[places[digit_of(pair.*id, digit % digits)]++] = pair;
+            std::swap(from, to);
+        }
     }
 
 private:
-    /// Moves pairs in the order of a digit, and within equal ones in their order.
-    template <class DigitOf>
-    void move_by(std::span<const aabb::index_pair> from, std::span<aabb::index_pair> to, std::size_t values,
-                 DigitOf digit_of) {
-        places_.assign(values, 0);
-        for (const aabb::index_pair& pair : from) ++places_[digit_of(pair)];
-        std::exclusive_scan(places_.begin(), places_.end(), places_.begin(), std::size_t{0});
-        for (const aabb::index_pair& pair : from) to[places_[digit_of(pair)]++] = pair;
-    }
-
     std::vector<aabb::index_pair> other_;
-    std::vector<std::size_t> places_;  // by value of a digit: where the next pair with it goes
+    std::vector<std::size_t> places_;  // by digit and its value: where the next pair with it goes
 };
 
 }  // namespace aabblab
