@@ -9,6 +9,10 @@ export namespace aabb {
 struct column_group {
     std::span<const box> boxes;
     std::span<const std::uint32_t> ids;  ///< by index, with bits of `begins_earlier`; empty if the index is the id
+
+    [[nodiscard]] std::uint32_t marked_id(std::uint32_t index) const noexcept {
+        return ids.empty() ? index : ids[index];
+    }
 };
 
 /// Puts the boxes of a large scene into cache-sized groups of neighbours; each group is cut into columns separately.

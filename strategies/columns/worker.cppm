@@ -2,6 +2,7 @@ export module aabb.columns.worker;
 
 export import aabb.columns.groups;
 export import aabb.columns.lists;
+import aabb.segment_trees;
 import aabb.std;
 
 export namespace aabb {
@@ -10,6 +11,7 @@ export namespace aabb {
 struct kept_plan {
     column_plan plan;
     bool by_keys = false;          ///< columns are sorted by exact keys, since buckets have too many boxes
+    bool in_trees = false;         ///< segment trees replace columns, since sweeps take too many tests in vain
     std::uint64_t most_tests = 0;  ///< limit on vector tests for early stopping; 0 before the first sweep
 
     [[nodiscard]] bool was_swept() const noexcept { return most_tests > 0; }
@@ -170,27 +172,41 @@ public:
     }
 
     /// Sweeps the columns. If a sweep needs far more tests than the plan's first one, it stops early, and columns are
-    /// filled and swept again: under a new plan, and if that also fails, sorted by exact keys instead of buckets. The
-    /// last resort has no limit; it costs about as much as a sweep along one axis.
+    /// filled and swept again: under a new plan, and if that also fails, sorted by exact keys instead of buckets. If
+    /// even these take more tests in vain than segment trees take steps, the trees replace them, whose time has a
+    /// bound.
     void sweep(const Partition& partition, const column_group& group, const box& within, kept_plan& kept,
                std::vector<index_pair>& pairs) {
         const std::size_t before = pairs.size();
         const std::size_t n = group.boxes.size();
         const std::uint64_t most_in_buckets = 64 * n + 4096;  // under a new plan; more: too many boxes share buckets
-        for (;;) {
+        // A list of n is copied on each level of each of two axes.
+        const auto levels = static_cast<std::uint64_t>(std::bit_width(n));
+        std::uint64_t most_by_keys = most_in_buckets + n * levels * levels;
+        while (!kept.in_trees) {
             // The boxes were validated when the columns were first filled.
             if (!is_filled_) static_cast<void>(fill(partition, group, within, kept));
             const bool is_new = !kept.was_swept();
-            const std::uint64_t most_tests = !is_new ? kept.most_tests : kept.by_keys ? unlimited : most_in_buckets;
+            const std::uint64_t most_tests = !is_new ? kept.most_tests : kept.by_keys ? most_by_keys : most_in_buckets;
             const std::uint64_t tests = sweep_.sweep(columns_.block(), pairs, most_tests, counters_);
             if (tests <= most_tests) {
                 if (is_new) kept.most_tests = 2 * tests + n + 1;  // later sweeps may take about twice as many
                 return;
             }
+            // Where there are many pairs, tests are not in vain.
+            const bool has_many_pairs = 2 * (pairs.size() - before) > tests;
             pairs.resize(before);
             is_filled_ = false;
-            kept = is_new ? kept_plan{.plan = kept.plan, .by_keys = true} : make_plan(partition, group, within);
+            if (!is_new)
+                kept = make_plan(partition, group, within);
+            else if (!kept.by_keys)
+                kept.by_keys = true;
+            else if (has_many_pairs)
+                most_by_keys = unlimited;
+            else
+                kept = {.plan = kept.plan, .in_trees = true, .most_tests = tests};
         }
+        search_in_trees(group, kept.plan.axis, pairs);
     }
 
     [[nodiscard]] std::size_t copies() const noexcept { return columns_.copies(); }
@@ -206,9 +222,27 @@ public:
         for (const column_groups& groups : levels_) sum += bytes_of(groups);
         return sum;
     }
-    [[nodiscard]] std::size_t sweep_bytes() const noexcept { return bytes_of(sweep_); }
+    [[nodiscard]] std::size_t sweep_bytes() const noexcept { return bytes_of(sweep_, trees_, tree_lists_); }
 
 private:
+    void search_in_trees(const column_group& group, int axis, std::vector<index_pair>& pairs) {
+        std::array<std::span<const projection>, 3> lists;
+        for (std::size_t k = 0; k < 3; ++k) {
+            std::vector<projection>& list = tree_lists_[k];
+            list.resize(group.boxes.size());
+            for (std::uint32_t i = 0; i < list.size(); ++i) list[i] = {group.boxes[i].min[static_cast<int>(k)], i};
+            sort_.sort(std::span(list), counters_);
+            lists[k] = list;
+        }
+        const std::span<const projection> places = lists[static_cast<std::size_t>(axis)];
+        for (const auto [p, q] : trees_.find(group.boxes, lists, axis, counters_)) {
+            const std::uint32_t a = group.marked_id(places[p].id), b = group.marked_id(places[q].id);
+            // Copies that both begin in an earlier group on an axis are a pair there.
+            if ((a & b & ~column_entry::index_mask) == 0)
+                pairs.push_back(ordered_pair(a & column_entry::index_mask, b & column_entry::index_mask));
+        }
+    }
+
     static constexpr std::uint64_t unlimited = std::numeric_limits<std::uint64_t>::max();
 
     /// The limit on copies above which columns are not worth their cost.
@@ -222,6 +256,8 @@ private:
     column_lists columns_;
     bool is_filled_ = false;
     std::deque<column_groups> levels_;  // nested groups, by depth
+    segment_trees trees_;
+    std::array<std::vector<projection>, 3> tree_lists_;
 };
 
 }  // namespace aabb

@@ -21,6 +21,7 @@ const std::vector<std::string> rooms = {
     "modules/containment",
     "modules/pipeline",
     "modules/collision_filter",
+    "strategies/segment_trees",
     "strategies/columns",
     "strategies/split_mesh",
     "strategies/wide_tree",
@@ -82,8 +83,8 @@ struct dependency {
 };
 
 /// Rooms that expose one module, of their own name, and hide all others.
-const std::set<std::string> hiding_rooms = {"strategies/columns", "strategies/distance", "strategies/split_mesh",
-                                            "strategies/touching", "strategies/wide_tree"};
+const std::set<std::string> hiding_rooms = {"strategies/columns",    "strategies/distance", "strategies/segment_trees",
+                                            "strategies/split_mesh", "strategies/touching", "strategies/wide_tree"};
 
 /// Whether the module is one that its room hides.
 bool is_hidden(const dependency& d) {
