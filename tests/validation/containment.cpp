@@ -459,6 +459,32 @@ TEST_CASE("a ray crosses a triangle in its inside, or is unclear at an edge") {
     CHECK(count(centre, {beside, 0.5, 9}, true, turned)[ray_crossing::leaves] == 1);
 }
 
+TEST_CASE("a ray's box overlaps what it crosses though its start and the surface's floats are off by their error") {
+    constexpr double error = 0x1p-12;
+    mesh m;
+    add_triangle(m, {0, 0, 0}, {0, 0, 1}, {0, 1, 0});
+    // In y from 0 to 1; no float is equal to x.
+    set_vertices(m, std::vector<vec3d>{{0.25 + 0x1p-40, 0, -1}, {0.25 + 0x1p-40, 0, 1}, {0.25 + 0x1p-40, 1, 0}});
+    for (vec3f& v : m.vertices) v[1] += static_cast<float>(error / m.frame.scale);
+    // The ray begins above 0 and ends below it; the image of its start is as far down as the floats are up.
+    aabb::parity_ray ray(m, {}, bounds_of(m), {0, error / 2, 0}, {});
+    const auto in_frame = [&](double x, int k) { return (x - m.frame.origin[k]) / m.frame.scale; };
+    const auto allowed = static_cast<float>(in_frame(error, 1) - in_frame(0, 1));
+    ray.set_image({static_cast<float>(in_frame(0, 0)), static_cast<float>(in_frame(-error / 2, 1)),
+                   static_cast<float>(in_frame(0, 2))},
+                  {allowed, allowed, allowed});
+    ray.aim_at({2, -error / 2, 0});
+    const ray_crossing crossing = ray.crossing(0);
+    CHECK((crossing == ray_crossing::leaves || crossing == ray_crossing::enters));
+    CHECK(overlaps(ray.reach(), bounds_of(m.triangle(0))));
+    // Away from the surface by more than both errors it does not.
+    ray.set_image({static_cast<float>(in_frame(0, 0)), static_cast<float>(in_frame(-4 * error, 1)),
+                   static_cast<float>(in_frame(0, 2))},
+                  {allowed, allowed, allowed});
+    ray.aim_at({2, -4 * error, 0});
+    CHECK_FALSE(overlaps(ray.reach(), bounds_of(m.triangle(0))));
+}
+
 TEST_CASE("a ray through a triangle without area crosses nothing") {
     mesh m;
     add_triangle(m, {0, 0, 0}, {1, 0, 0}, {3, 0, 0});
