@@ -19,7 +19,8 @@ struct listed_pair {
     friend auto operator<=>(const listed_pair&, const listed_pair&) = default;
 };
 
-/// The value of ids and frames in a list that fit no scene: negative ones, and those from 2^32 - 1.
+/// The value of -1 in a list, so that 1 more is 0. Other ids and frames that fit no scene, negative ones and those from
+/// 2^32 - 2, have the value before it.
 inline constexpr std::uint32_t beyond_all = std::numeric_limits<std::uint32_t>::max();
 
 struct pair_list {

@@ -144,6 +144,7 @@ void list_explanation::add(const compared_frame& frame) {
     test_ids(frame);
     test_order(frame);
     has_early_rows_ |= frame_ == 0 && !frame.rows.empty();
+    has_later_pairs_ |= frame_ > 0 && !frame.truth.empty();
     if (!frame.rows.empty()) {
         last_listed_ = frame_;
         truth_after_last_ = 0;
@@ -183,7 +184,7 @@ std::string list_explanation::reason_of_frames(const check_result& result) const
     if (explains(late_) && !has_early_rows_ && result.unknown_frames > 0)
         return "Frames are off by one: with 1 taken from each, the list is right. The scene counts from 0.";
     // If boxes rest, every frame has the pairs of the next, so a frame before the last must be wrong.
-    if (is_early_ && frames.front().frame + 1 < frame_)
+    if (is_early_ && has_later_pairs_ && frames.front().frame + 1 < frame_)
         return result.unknown_frames > 0 ? "Frames are off by one: with 1 added to each, the list is right."
                                          : "The list is early: every frame has the pairs of the next one.";
     if (explains(constant_)) {

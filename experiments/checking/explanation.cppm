@@ -54,6 +54,7 @@ private:
     /// Two objects whose ids may be exchanged from the first wrong frame on; empty before it.
     std::optional<std::vector<aabb::index_pair>> exchanges_;
     bool has_early_rows_ = false;         // in frame 0
+    bool has_later_pairs_ = false;        // in the ground truth of a later frame
     std::uint32_t last_listed_ = 0;       // the last frame with rows
     std::uint64_t truth_after_last_ = 0;  // pairs of the ground truth in later frames
     std::vector<std::uint32_t> lacking_;  // frames that have pairs, but no rows

@@ -69,17 +69,18 @@ void split(std::string_view line, std::vector<std::string_view>& words) {
 }
 
 std::uint32_t id_of(std::int64_t number) {
-    return number >= 0 && number < beyond_all ? static_cast<std::uint32_t>(number) : beyond_all;
+    if (number == -1) return beyond_all;
+    return number >= 0 && number < beyond_all ? static_cast<std::uint32_t>(number) : beyond_all - 1;
 }
 
 /// Empty if the number is no integer.
 std::optional<std::uint32_t> id_of(double number) {
     if (number != std::floor(number)) return std::nullopt;
-    return number >= 0 && number < beyond_all ? static_cast<std::uint32_t>(number) : beyond_all;
+    if (number == -1) return beyond_all;
+    return number >= 0 && number < beyond_all ? static_cast<std::uint32_t>(number) : beyond_all - 1;
 }
 
-/// The integer of a word, which may be written as a floating-point number; empty if it is none. Those that no scene has
-/// are `beyond_all`.
+/// The integer of a word, which may be written as a floating-point number; empty if it is none.
 std::optional<std::uint32_t> id_of(std::string_view word) {
     const char* const last = word.data() + word.size();
     const auto parsed = [&word, last](auto number) -> std::optional<decltype(number)> {

@@ -107,7 +107,7 @@ void print_smallest(const check_request& request, const smallest_scene& smallest
                     const std::string& files) {
     if (request.json) return;
     print(fmt::format(
-        "\nSmallest scene, after {} runs: {} {} in {} frame{}. To repeat:\n  aabblab check {} --command '{}'{}\n",
+        "\nSmallest scene, after {} runs: {} {} in {} frame{}. To repeat:\n  ./aabblab check {} --command '{}'{}\n",
         smallest.runs, smallest.objects, objects, smallest.frames, smallest.frames == 1 ? "" : "s", files,
         *request.command,
         std::string(request.self.empty() ? "" : " --self") + (request.touching ? "" : " --touching=no")));
@@ -255,7 +255,11 @@ void add_check(const command_parser& program) {
         "Run this program, with the arguments SCENE PAIRS TIMES or A B PAIRS TIMES, and check the list that it "
         "writes to PAIRS; if it is wrong, reduce the scene to the smallest one in which it is. TIMES may be "
         "left out");
-    command.option("--timeout SECONDS", &request.timeout, "Time limit for each run of the program (default 600)");
+    const auto take_timeout = [&request](const std::string& text) {
+        request.timeout =
+            parse_whole(text, 1, 1'000'000, "--timeout is a number of seconds: a whole number from 1 to 1,000,000");
+    };
+    command.option("--timeout SECONDS", take_timeout, "Time limit for each run of the program (default 600)");
     command.option("--smallest FILE", &request.smallest,
                    "Where the smallest scene is written (default smallest, with the ending of SCENE); of meshes the "
                    "beginning of the names FILE_a.off and FILE_b.off");

@@ -293,7 +293,8 @@ void add_collide(const command_parser& program) {
     command.option("--repeat N", take_repeats, "Search N times at each pose; --json lists the time of every search");
     command.option(
         "--out FILE", &request.out,
-        "CSV file for pairs: a,b; with --self a,b,shared_vertices; --self=no-adjacent a,b; --poses pose,a,b");
+        "File for the pairs, CSV, .npy or .json: rows a,b; with --self a,b,shared_vertices; --self=no-adjacent a,b; "
+        "--poses pose,a,b");
     command.flag("--geometry", &request.geometry,
                  "Add to each pair the triangles' intersection, in world coordinates: columns kind, number of "
                  "vertices, error bounds on x, y, z, vertices");

@@ -137,11 +137,12 @@ void add_contacts(const command_parser& program) {
     add_within(command, &request.within, "triangles");
     add_filter_options(command, &request.filter);
     command.option("--out FILE", &request.out,
-                   "CSV file for the contacts: rows frame,object_a,object_b,triangle_a,triangle_b");
-    command.option("--intervals FILE", &request.intervals,
-                   "CSV file for when objects are in contact: for each pair of objects a row per interval of frames in "
-                   "contact, with one of the first contacts, and the nearest frame before, with the distance; the "
-                   "nearest frame after the last contact has a row of its own");
+                   "File for the contacts, CSV, .npy or .json: rows frame,object_a,object_b,triangle_a,triangle_b");
+    command.option(
+        "--intervals FILE", &request.intervals,
+        "File, CSV or .json, for when objects are in contact: for each pair of objects a row per interval of frames in "
+        "contact, with one of the first contacts, and the nearest frame before, with the distance; the "
+        "nearest frame after the last contact has a row of its own");
     command.flag("--geometry", &request.geometry,
                  "Add to each contact the triangles' intersection, in world coordinates: columns kind, number of "
                  "vertices, error bounds on x, y, z, vertices");

@@ -26,7 +26,7 @@ std::string quoted(const std::string& word) {
 
 /// The command line that runs the engine on the scene alone, after one that generates the scene if no file has it.
 std::string repetition_of(const external_engine& engine, const scene_choice& scene) {
-    std::string recording = "scene.aabbs", generation = "aabblab scene " + scene.kind;
+    std::string recording = "scene.aabbs", generation = "./aabblab scene " + scene.kind;
     for (const auto& [name, value] : scene.settings) {
         if (std::ranges::find(filter_settings, name) != filter_settings.end()) continue;
         if (!scene.seed) recording = resolve_file(value, scene.folder).string();  // it has no other setting
@@ -35,7 +35,7 @@ std::string repetition_of(const external_engine& engine, const scene_choice& sce
     generation = scene.seed ? fmt::format("{} --seed {} --out {} && ", generation, *scene.seed, recording) : "";
     std::string command = quoted(engine.program);
     for (const std::string& argument : std::span(engine.command).subspan(1)) command += " " + quoted(argument);
-    return fmt::format("{}aabblab check {} --command {}", generation, quoted(recording), quoted(command));
+    return fmt::format("{}./aabblab check {} --command {}", generation, quoted(recording), quoted(command));
 }
 
 /// The list of an engine, without the pairs that the filter of the scene leaves out: the engine does not know it.

@@ -242,6 +242,21 @@ TEST_CASE_METHOD(in_folder, "check recognises exchanged and mirrored ids, early 
                     for (auto& [frame, a, b] : list) a = 59 - a, b = 59 - b;
                 })),
                 "Ids are mirrored: with 59 - id"));
+    // Where 0 is -1, ids are off by one; -7 stands for no object.
+    REQUIRE(pairs_of.contains(0));
+    const auto less_one = [](std::int64_t of_0) {
+        return [of_0](rows& list) {
+            for (auto& [frame, a, b] : list)
+                for (std::int64_t* id : {&a, &b}) *id = *id == 0 ? of_0 : *id - 1;
+        };
+    };
+    CHECK(holds(pattern_of(report(less_one(-1))), "with 1 added to each"));
+    CHECK(report(less_one(-7))["patterns"].empty());
+    // No later frame has pairs that frame 0 could list too early.
+    const std::string parting = folder.write("parting.csv",
+                                             "0,0,0,0,0,1,1,1\n0,1,0,0,0,1,1,1\n1,0,0,0,0,1,1,1\n"
+                                             "1,1,5,0,0,6,1,1\n");
+    CHECK(holds(pattern_of(checked({parting, folder.write("late.csv", "1,0,1\n")})), "The list is late"));
     const auto early = [](rows& list) {
         for (auto& row : list) --row[0];
     };
@@ -323,6 +338,8 @@ TEST_CASE_METHOD(in_folder, "check rejects options that do not belong to the sce
          {{motion, mesh, list, "--self"}, "a motion file has the poses of its meshes"},
          {{motion, mesh, "--command", "true"}, "not a motion"},
          {{scene.recording, "--command", "true", "--within", "1"}, "--command checks a list of all overlaps"},
+         {{scene.recording, "--command", "true", "--timeout", "0"}, "--timeout is a number of seconds"},
+         {{scene.recording, "--command", "true", "--timeout=-3"}, "--timeout is a number of seconds"},
          {{motion, mesh, folder.write("pairs.csv", "0,1\n")},
           "expected object_a,object_b,triangle_a,triangle_b, perhaps after frame"},
          {{motion, mesh, folder.write("names.csv", "frame,a,b\n0,1,2\n")},
