@@ -250,11 +250,11 @@ void add_check(const command_parser& program) {
     add_metric(command, &request.metric);
     command.flag("--swept", &request.swept, "Check pairs of swept boxes, as pairs --swept finds them");
     add_filter_options(command, &request.filter);
-    command.option(
-        "--command PROGRAM", &request.command,
-        "Run this program, with the arguments SCENE PAIRS TIMES or A B PAIRS TIMES, and check the list that it "
-        "writes to PAIRS; if it is wrong, reduce the scene to the smallest one in which it is. TIMES may be "
-        "left out");
+    command.option("--command PROGRAM", &request.command,
+                   "Run this program, with the arguments SCENE PAIRS TIMES, A B PAIRS TIMES or, with --self, A PAIRS "
+                   "TIMES, and check the list that it "
+                   "writes to PAIRS; if it is wrong, reduce the scene to the smallest one in which it is. TIMES may be "
+                   "left out");
     const auto take_timeout = [&request](const std::string& text) {
         request.timeout =
             parse_whole(text, 1, 1'000'000, "--timeout is a number of seconds: a whole number from 1 to 1,000,000");
