@@ -79,7 +79,7 @@ stage_runner::stage_runner(stages given, const scene_frames& scene, aabb::instru
 void stage_runner::update() try {
     if (pipeline_) return pipeline_->update(scene_.poses());
     for (const std::uint32_t object : scene_.departures()) stages_.global->remove(object);
-    for (const std::uint32_t object : scene_.arrivals()) stages_.global->insert(object);
+    stages_.global->insert_all(scene_.arrivals());
     stages_.global->update(scene_.boxes());
 } catch (const aabb::input_error& error) {
     scene_.rethrow(error);

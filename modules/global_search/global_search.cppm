@@ -40,6 +40,7 @@ public:
 
     /// @throws input_error if the object is already present
     void insert(std::uint32_t id) { objects_.insert(id); }
+    void insert_all(std::span<const std::uint32_t> ids) { objects_.insert_all(ids); }
     /// @throws input_error if the object is not present
     void remove(std::uint32_t id) { objects_.remove(id); }
 
@@ -133,6 +134,7 @@ public:
     global_search(Sort sort, Partition, Sweep sweep) : sort_(std::move(sort)), sweep_(std::move(sweep)) {}
 
     void insert(std::uint32_t id) { objects_.insert(id); }
+    void insert_all(std::span<const std::uint32_t> ids) { objects_.insert_all(ids); }
     void remove(std::uint32_t id) { objects_.remove(id); }
 
     /// Updates the sweep's lists and pairs to the boxes of a frame, indexed by object id.
@@ -185,6 +187,7 @@ public:
         : search_(std::move(sort), std::move(partition), std::move(sweep)) {}
 
     void insert(std::uint32_t id) { objects_.insert(id); }
+    void insert_all(std::span<const std::uint32_t> ids) { objects_.insert_all(ids); }
     void remove(std::uint32_t id) { objects_.remove(id); }
 
     /// Passes the boxes of a frame, indexed by object id, to the partition's own search, which also validates them.

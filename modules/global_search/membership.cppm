@@ -23,6 +23,14 @@ public:
         ++size_;
     }
 
+    /// The same for several objects. If one is already present, those before it are inserted.
+    void insert_all(std::span<const std::uint32_t> ids) {
+        if (ids.empty()) return;
+        const std::size_t most = std::ranges::max(ids);
+        if (most >= state_.size()) state_.resize(most + 1, state::absent);
+        for (const std::uint32_t id : ids) insert(id);
+    }
+
     /// Makes an object absent from the next frame on. Until that frame it is `leaving`, since lists still contain it.
     /// @throws input_error if the object is not present
     void remove(std::uint32_t id) {

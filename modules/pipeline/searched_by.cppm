@@ -25,6 +25,7 @@ public:
     explicit searched_by(global_search<Sort, Partition, Sweep, Counters> search) : search_(std::move(search)) {}
 
     void insert(std::uint32_t id) override { search_.insert(id); }
+    void insert_all(std::span<const std::uint32_t> ids) override { search_.insert_all(ids); }
     void remove(std::uint32_t id) override { search_.remove(id); }
     void update(std::span<const box> boxes) override { search_.update(boxes); }
     void search(std::vector<index_pair>& pairs) override { search_.search(pairs); }

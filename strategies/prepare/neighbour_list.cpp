@@ -56,6 +56,10 @@ public:
         objects_.insert(id);
         frame_.change([&] { search_->insert(id); });
     }
+    void insert_all(std::span<const std::uint32_t> ids) override {
+        objects_.insert_all(ids);
+        frame_.change([&] { search_->insert_all(ids); });
+    }
     void remove(std::uint32_t id) override {
         objects_.remove(id);
         search_->remove(id);

@@ -35,7 +35,7 @@ composition columns_with(const std::string& settings) {
 struct search_by_columns : global_search<bucket_sort, columns_partition, simd_sweep, work_counters> {
     explicit search_by_columns(std::size_t objects, const columns_partition::config& config = {})
         : global_search({}, columns_partition(config), {}) {
-        insert_all(*this, objects);
+        ::insert_all(*this, objects);
     }
 };
 

@@ -105,6 +105,7 @@ TEST_CASE("a composition rejects invalid calls, does not search after them, and 
         CHECK_REFUSED(stage->update(boxes), "no object was inserted; call insert(id) for each box first");
         insert_all(*stage, 3);
         CHECK_REFUSED(stage->insert(1), "object 1 is inserted twice");
+        CHECK_REFUSED(stage->insert_all(std::array<std::uint32_t, 2>{2, 1}), "object 2 is inserted twice");
         CHECK_REFUSED(stage->remove(7), "object 7 is removed but was never inserted");
         CHECK_REFUSED(stage->update(std::span(boxes).first(2)), "object 2 is present, but the frame has only 2 boxes");
         check_no_frame();

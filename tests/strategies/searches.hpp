@@ -3,10 +3,15 @@
 #include "../boxes.hpp"
 #include "../compositions.hpp"
 
-/// Inserts objects 0 to n - 1.
+/// Inserts objects 0 to n - 1: the first half one by one, the others in one call if there is one.
 template <class Search>
 void insert_all(Search& search, std::size_t n) {
-    for (std::uint32_t id = 0; id < n; ++id) search.insert(id);
+    std::vector<std::uint32_t> others;
+    for (std::uint32_t id = 0; id < n; ++id) id < n / 2 ? search.insert(id) : others.push_back(id);
+    if constexpr (requires { search.insert_all(others); })
+        search.insert_all(others);
+    else
+        for (const std::uint32_t id : others) search.insert(id);
 }
 
 inline std::unique_ptr<aabb::global_stage> search_of(const aabb::composition& c, std::size_t objects) {

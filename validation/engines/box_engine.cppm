@@ -9,6 +9,7 @@ namespace aabb {
 class box_engine : public global_stage {
 public:
     void insert(std::uint32_t id) final { objects_.insert(id); }
+    void insert_all(std::span<const std::uint32_t> ids) final { objects_.insert_all(ids); }
     void remove(std::uint32_t id) final { objects_.remove(id); }
 
     /// Gives the engine the boxes of a frame, after invalid ones were rejected. The ids of the present objects are
