@@ -262,12 +262,16 @@ TEST_CASE("an auto_detector reports what it selected, by which rule, and what it
     CHECK(rule_of(boxes, strategy_kind::prepare).starts_with("none, fewer than 4 frames"));
     CHECK(rule_of(boxes, strategy_kind::tree).empty());
     CHECK(leaves_out(boxes, absence::local_detection));
+#if !__has_feature(address_sanitizer)  // with it, every search counts (`aabb.composed`)
     CHECK(leaves_out(boxes, absence::counters));
+#endif
     const auto_detector many(meshes, mesh_of);
     CHECK(rule_of(many, strategy_kind::prepare).starts_with("neighbour_list, 4 frames or more"));
     CHECK(rule_of(many, strategy_kind::build).starts_with("sah, "));
     CHECK(rule_of(auto_detector(meshes, mesh_of, {}, 1), strategy_kind::build).starts_with("median, "));
+#if !__has_feature(address_sanitizer)
     CHECK(leaves_out(many, absence::counters));
+#endif
 }
 
 TEST_CASE("a detector rejects invalid arguments and calls in one sentence") {

@@ -141,7 +141,9 @@ TEST_CASE("every composition finds the pairs after all boxes moved, with and wit
         if (!is_brute_force(composition))
             CHECK(counted->counters()[work::comparisons] + counted->counters()[work::moves] >= n - 1);
         CHECK(counted->counters()[work::box_tests] > 0);
+#if !__has_feature(address_sanitizer)  // with it, every search counts (`aabb.composed`)
         CHECK(plain->counters()[work::box_tests] == 0);
+#endif
     }
 }
 
