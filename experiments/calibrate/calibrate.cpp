@@ -17,7 +17,7 @@ namespace aabblab {
 namespace {
 
 /// Costs that are fitted together, since the same runs determine them.
-enum class cost_group : unsigned char { lists, cut, columns, indices, median, sah, queries };
+enum class cost_group : unsigned char { lists, cut, columns, rest, indices, median, sah, queries };
 
 /// A part of a run whose work belongs to one group.
 struct measured_part {
@@ -242,6 +242,26 @@ void add_column_trials(std::vector<trial>& trials, const generated_scene& scene)
     add_column_trial(trials, scene, "0", {});
 }
 
+/// Adds trials of boxes of which a share moves among others at rest.
+void add_rest_trials(std::vector<trial>& trials, std::size_t objects, const char* ratio, bool held_out) {
+    aabb::cost_model never_all;
+    never_all.active_box = 1e-9;
+    for (const double moving : {0.02, 0.1, 0.3}) {
+        const scene_choice choice{"cloud",
+                                  {{"objects", std::to_string(objects)},
+                                   {"moving", std::to_string(moving)},
+                                   {"ratio", ratio},
+                                   {"displacement", "0.5"},
+                                   {"frames", "60"}},
+                                  {}};
+        const generated_scene scene(choice, held_out);
+        trials.push_back(frames_trial(scene, cost_group::rest, {scene.frames, {}, never_all},
+                                      [n = scene.n, moving](const frame_sample& mean) {
+                                          return std::vector<double>{moving * n, n, mean.pairs, /*constant term=*/1};
+                                      }));
+    }
+}
+
 /// Adds trials of two sets that are joined by an index, with a half, a quarter and a sixteenth of the boxes looked up.
 void add_index_trials(std::vector<trial>& trials, const generated_scene& scene) {
     aabb::cost_model always_joins;
@@ -298,8 +318,8 @@ void add_mesh_trials(std::vector<trial>& trials, const std::string& standing, co
 
 using sizes = std::vector<std::size_t>;
 
-/// Trials of Verlet lists, axial cuts, columns and indices; the held-out ones, which check the fit, use other kinds of
-/// scenes.
+/// Trials of Verlet lists, axial cuts, columns, boxes at rest and indices; the held-out ones, which check the fit, use
+/// other kinds of scenes.
 std::vector<trial> box_trials(calibration_size size) {
     const bool quick = size == calibration_size::quick;
     std::vector<trial> trials;
@@ -326,6 +346,10 @@ std::vector<trial> box_trials(calibration_size size) {
               /*held_out=*/true);
     add_searches({"brownian", "mixed_sizes", "clustered"}, quick ? sizes{1000, 5000} : sizes{1000, 5000, 20'000},
                  /*held_out=*/false);
+    for (const std::size_t n : quick ? sizes{1000, 5000} : sizes{1000, 5000, 20'000})
+        for (const char* ratio : {"1", "3"}) add_rest_trials(trials, n, ratio, /*held_out=*/false);
+    for (const std::size_t n : quick ? sizes{2000} : sizes{2000, 10'000})
+        add_rest_trials(trials, n, "2", /*held_out=*/true);
     add_searches({"needles", "hollow_sphere"}, quick ? sizes{2000} : sizes{2000, 10'000}, /*held_out=*/true);
     return trials;
 }
@@ -350,10 +374,11 @@ struct cost_group_info {
     std::vector<double m::*> costs;  ///< of the first kinds of work; further kinds are fitted as well
 };
 
-const std::array<cost_group_info, 7> cost_groups{
+const std::array<cost_group_info, 8> cost_groups{
     {{"Verlet lists", {&m::search_box, &m::search_pair, &m::keep_box, &m::watch_box, &m::test_pair}},
      {"axial cut", {&m::list_entry, &m::cut_entry, &m::cut_subset, &m::cut_test}},
      {"columns", {&m::column_entry, &m::column, &m::column_test}},
+     {"boxes at rest", {&m::active_box}},
      {"indices of a filter", {&m::refit_box, &m::open_node}},
      {"median builds", {&m::median_triangle}},
      {"SAH builds", {&m::sah_triangle}},

@@ -48,24 +48,4 @@ private:
     std::optional<double> per_query_;
 };
 
-/// Decides when to change from one way to another: once what the frames so far have cost too much would have paid for
-/// the change, so that a change which is never repaid at most doubles the time (Karlin, Manasse, Rudolph and Sleator,
-/// "Competitive snoopy caching", 1988).
-class regret {
-public:
-    /// Adds a frame.
-    /// @param excess what this way takes more than the other, in ns; less if it is negative
-    /// @returns whether to change now, after which the sum is 0
-    bool exceeds(double ns_to_change, double excess) noexcept {
-        sum_ = std::max(0.0, sum_ + excess);
-        if (!(sum_ > ns_to_change)) return false;
-        sum_ = 0;
-        return true;
-    }
-    void forget() noexcept { sum_ = 0; }
-
-private:
-    double sum_ = 0;
-};
-
 }  // namespace aabb

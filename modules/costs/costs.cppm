@@ -21,10 +21,11 @@ struct cost_model {
     double cut_subset = 16;  ///< a subset (`work::subsets`)
     double cut_test = 1;     ///< a test of two boxes in a subset (`work::box_tests`)
 
-    // Columns (`columns`).
+    // Columns (`columns`). `active_box` is compared with the costs of Verlet lists.
     double column_entry = 6;  ///< placing an entry of a box in a column (`work::subset_copies`)
     double column = 16;       ///< a column (`work::subsets`)
     double column_test = 1;   ///< a test of an entry against a vector of them (`work::box_tests` over `simd::width`)
+    double active_box = 50;   ///< searching a box that moves among boxes at rest, and looking it up among these
 
     // Trees for few or many queries (`aabb.selection`).
     double median_triangle = 81;  ///< building a tree by `median`, per triangle
@@ -46,7 +47,7 @@ struct cost_info {
     std::string_view of;  ///< a short description of the work
 };
 
-inline constexpr std::array<cost_info, 17> cost_infos{{
+inline constexpr std::array<cost_info, 18> cost_infos{{
     {&cost_model::search_box, "search_box", "ns/box", "searching a box by columns"},
     {&cost_model::search_pair, "search_pair", "ns/pair", "finding a pair by columns"},
     {&cost_model::keep_box, "keep_box", "ns/box", "keeping a box with its Verlet list"},
@@ -59,6 +60,7 @@ inline constexpr std::array<cost_info, 17> cost_infos{{
     {&cost_model::column_entry, "column_entry", "ns/entry", "an entry of a box in a column"},
     {&cost_model::column, "column", "ns/column", "a column"},
     {&cost_model::column_test, "column_test", "ns/vector", "testing an entry by a vector"},
+    {&cost_model::active_box, "active_box", "ns/box", "a box that moves among others at rest"},
     {&cost_model::median_triangle, "median_triangle", "ns/triangle", "building by median"},
     {&cost_model::sah_triangle, "sah_triangle", "ns/triangle", "building by sah"},
     {&cost_model::node_visit, "node_visit", "ns/visit", "visiting a pair of nodes"},
@@ -70,5 +72,25 @@ inline constexpr std::array<cost_info, 17> cost_infos{{
 [[nodiscard]] const cost_model& machine_costs() noexcept;
 /// Sets the costs of the process. Must be called before strategies are composed; not thread-safe.
 void set_machine_costs(const cost_model& costs) noexcept;
+
+/// Decides when to change from one way to another: once what the frames so far have cost too much would have paid for
+/// the change, so that a change which is never repaid at most doubles the time (Karlin, Manasse, Rudolph and Sleator,
+/// "Competitive snoopy caching", 1988).
+class regret {
+public:
+    /// Adds a frame.
+    /// @param excess what this way takes more than the other, in ns; less if it is negative
+    /// @returns whether to change now, after which the sum is 0
+    bool exceeds(double ns_to_change, double excess) noexcept {
+        sum_ = std::max(0.0, sum_ + excess);
+        if (!(sum_ > ns_to_change)) return false;
+        sum_ = 0;
+        return true;
+    }
+    void forget() noexcept { sum_ = 0; }
+
+private:
+    double sum_ = 0;
+};
 
 }  // namespace aabb

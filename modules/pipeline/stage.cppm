@@ -22,6 +22,7 @@ enum class plan_kind : std::uint8_t {
     static_frame,
     filter,
     resting_index,
+    resting_boxes,
     set_join
 };
 struct stage_plan {

@@ -21,15 +21,29 @@ public:
     [[nodiscard]] fill_result fill(std::span<const box> boxes, std::span<const std::uint32_t> ids,
                                    const column_plan& plan, bool by_keys, std::size_t most_copies, Sort& sort,
                                    Counters& counters) {
+        const bool in_buckets = BucketSort<Sort> && !by_keys;
+        const std::uint32_t bucket_bits = in_buckets ? plan.bucket_bits(boxes.size()) : 0;  // 0: a column is one bucket
+        const fill_result result = fill_buckets(boxes, ids, plan, bucket_bits, most_copies);
+        if (result != fill_result::complete) return result;
+        counters.add(work::moves, copies());
+        if (!in_buckets) {
+            sort_columns(sort, counters);
+            block_.ends = ends_;
+        }
+        return fill_result::complete;
+    }
+
+    /// The same with columns that are ordered by buckets.
+    /// @param bucket_bits binary logarithm of the number of buckets of a column
+    [[nodiscard]] fill_result fill_buckets(std::span<const box> boxes, std::span<const std::uint32_t> ids,
+                                           const column_plan& plan, std::uint32_t bucket_bits,
+                                           std::size_t most_copies) {
         block_ = {.boxes = boxes, .ids = ids, .entries = {}, .ends = {}, .axis = plan.axis};
         plan_ = plan;
-        const bool in_buckets = BucketSort<Sort> && !by_keys;
-        bucket_bits_ = in_buckets ? plan.bucket_bits(boxes.size()) : 0;  // 0: a column is one bucket
+        bucket_bits_ = bucket_bits;
         if (const fill_result result = count_boxes(most_copies); result != fill_result::complete) return result;
         const std::uint32_t entries = allocate_columns();
         write_entries();
-        counters.add(work::moves, copies());
-        if (!in_buckets) sort_columns(sort, counters);
         block_.entries = std::span(entries_).first(entries);
         block_.ends = ends_;
         return fill_result::complete;

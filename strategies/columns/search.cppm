@@ -1,70 +1,10 @@
 export module aabb.columns.search;
 
-import aabb.columns.worker;
+import aabb.columns.resting_boxes;
 import aabb.pipeline;
 import aabb.std;
 
 export namespace aabb {
-
-/// Sleep detection: keeps the pairs of a frame for as long as nothing moves. A frame is kept only if a sample of its
-/// boxes has not moved since the previous frame, so moving scenes only compare the sample. If the sample is
-/// at rest but other boxes move, exponential back-off keeps ever fewer frames, down to one in 64.
-class static_frame {
-public:
-    /// Detects a frame in which nothing has moved since the kept one; if none is kept, keeps this one if a sample has
-    /// not moved. Copying costs time, so after frames kept in vain ever more are skipped (exponential back-off).
-    /// @returns whether `pairs` is still the result
-    [[nodiscard]] bool is_still_valid(std::span<const box> boxes, const membership& objects) {
-        const bool same_objects = objects.arrivals() == 0 && !objects.any_departures() && boxes.size() == size_;
-        if (!boxes_.empty()) {
-            if (same_objects && are_same(boxes, boxes_)) {
-                backoff_ = 0;
-                return true;
-            }
-            boxes_.clear();
-            pairs_.clear();
-            backoff_ = std::min(2 * backoff_ + 1, longest_backoff);
-            skipped_frames_ = 0;
-        }
-        size_ = boxes.size();
-        const auto sample = sample_of(boxes);
-        is_to_be_kept_ = same_objects && are_same(sample, sample_) && ++skipped_frames_ > backoff_;
-        sample_ = sample;
-        return false;
-    }
-
-    /// Keeps a frame and its pairs if the sample was at rest.
-    void keep(std::span<const box> boxes, std::span<const index_pair> pairs) {
-        if (!is_to_be_kept_) return;
-        pairs_.assign(pairs.begin(), pairs.end());
-        boxes_.assign(boxes.begin(), boxes.end());
-    }
-
-    [[nodiscard]] std::span<const index_pair> pairs() const noexcept { return pairs_; }
-    [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(boxes_, pairs_); }
-
-private:
-    static constexpr std::size_t sample_size = 64;
-    static constexpr unsigned longest_backoff = 63;
-
-    [[nodiscard]] static bool are_same(std::span<const box> a, std::span<const box> b) noexcept {
-        return std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
-    }
-    [[nodiscard]] static std::array<box, sample_size> sample_of(std::span<const box> boxes) noexcept {
-        std::array<box, sample_size> sample{};
-        if (!boxes.empty())
-            for (std::size_t i = 0; i < sample_size; ++i) sample[i] = boxes[i * boxes.size() / sample_size];
-        return sample;
-    }
-
-    std::size_t size_ = 0;
-    std::array<box, sample_size> sample_{};
-    bool is_to_be_kept_ = false;
-    unsigned backoff_ = 0;  // back-off: number of frames that are not kept although the sample is at rest
-    unsigned skipped_frames_ = 0;
-    std::vector<box> boxes_;  // boxes of all objects, including absent ones; empty if no frame is kept
-    std::vector<index_pair> pairs_;
-};
 
 /// Brute-force search for few boxes: testing all pairs by vectors is faster than sorting or cutting.
 class brute_force_batch {
@@ -155,7 +95,7 @@ private:
 
 /// Broad phase that cuts before it sorts: boxes are put into columns unsorted. Large scenes are processed group by
 /// group, and the data of a group are built right before it is swept, so that they are still in a cache. Few boxes are
-/// tested by brute force. Plans are kept between frames, and so are the pairs for as long as nothing moves.
+/// tested by brute force. Plans are kept between frames, and so are the pairs of boxes at rest (`resting_boxes`).
 template <SortPolicy Sort, ColumnPartition Partition, ColumnSweep Sweep, CounterPolicy Counters>
 class column_search {
 public:
@@ -167,41 +107,28 @@ public:
     column_search(column_search&&) = default;
     column_search& operator=(column_search&&) = default;
 
-    /// Starts a frame: keeps the pairs if nothing moved, prepares brute force for few boxes, or cuts the boxes into
-    /// columns. These follow a plan, which is made anew once it is old or the bounds of the scene have changed.
+    /// Starts a frame: selects the boxes that are to be searched, those that do not rest or all, and prepares them.
     /// @throws input_error as `global_search::update`.
     void update(std::span<const box> boxes, const membership& objects, Counters& counters) {
         boxes_ = boxes;
-        is_static_ = static_frame_.is_still_valid(boxes, objects);
-        if (is_static_) return;
         if (boxes.size() > column_entry::index_mask) throw input_error("columns take at most 536,870,911 objects");
-        select_present(boxes, objects);
-        const std::size_t n = present_.boxes.size();
-        uses_brute_force_ = n <= partition_.brute_force_threshold();
-        // 0 until the boxes are cut: brute force or an exception leaves no plan for the next frame.
-        const std::size_t planned_boxes = std::exchange(planned_boxes_, 0);
-        if (uses_brute_force_) {
-            if (!batch_.fill(present_)) require_valid(boxes);  // throws
-            return;
-        }
-        const box bounds = bounds_of_sample();
-        const bool needs_plan = is_stale(n, planned_boxes) || bounds_have_changed(bounds, planned_bounds_);
-        if (needs_plan) planned_bounds_ = bounds;
-        plan_age_ = needs_plan ? 0 : plan_age_ + 1;
-        if (!cut_boxes(needs_plan, counters)) require_valid(boxes);  // throws
-        planned_boxes_ = n;
-        collect_counters(counters);
+        searches_active_ = resting_boxes_.update(partition_, boxes, objects);
+        if (searches_active_)
+            present_ = resting_boxes_.active();
+        else
+            select_present(boxes, objects);
+        prepare(counters);
     }
 
-    /// Appends the overlapping pairs: those of an earlier frame if nothing has moved since, or else by brute force, in
-    /// columns over the whole scene, or in groups of columns, as `update` chose.
+    /// Appends the overlapping pairs: those of boxes at rest, and those of the others by brute force, in columns over
+    /// the whole scene, or in groups of columns, as `update` chose.
     void search(std::vector<index_pair>& pairs, Counters& counters) {
         for (worker& w : workers_) w.searcher.times.clear();
-        if (is_static_) {
-            pairs.insert(pairs.end(), static_frame_.pairs().begin(), static_frame_.pairs().end());
-            return;
-        }
         const std::size_t before = pairs.size();
+        if (searches_active_ && !resting_boxes_.append_pairs(pairs, counters)) {
+            pairs.resize(before);
+            search_all_boxes(counters);
+        }
         if (uses_brute_force_)
             batch_.search(pairs, counters);
         else if (groups_.size() == 0)
@@ -209,7 +136,11 @@ public:
         else
             search_groups(pairs);
         collect_counters(counters);
-        static_frame_.keep(boxes_, std::span(pairs).subspan(before));  // for a next frame in which nothing moves
+        const auto pairs_of_frame = std::span(pairs).subspan(before);
+        if (searches_active_)
+            resting_boxes_.end_partial_search(pairs_of_frame);
+        else
+            resting_boxes_.end_full_search(boxes_, pairs_of_frame);
     }
 
     /// The plan of the last frame that was cut: the grid of groups if there are groups, else the columns.
@@ -222,14 +153,22 @@ public:
              "{u} by {v} columns along the z axis"},
             {"{u} by {v} groups of columns along the x axis", "{u} by {v} groups of columns along the y axis",
              "{u} by {v} groups of columns along the z axis"}};
-        if (uses_brute_force_) return {};
+        std::vector<stage_plan> stage_plans;
+        if (searches_active_)
+            stage_plans.push_back({plan_kind::resting_boxes,
+                                   {"{resting} boxes at rest are kept with their pairs; {active} others are searched, "
+                                    "and looked up among these",
+                                    {{{"resting", static_cast<double>(resting_boxes_.resting())},
+                                      {"active", static_cast<double>(resting_boxes_.active().ids.size())}}}}});
+        if (uses_brute_force_) return stage_plans;
         const column_plan& p = plan();
-        return {{is_in_groups() ? plan_kind::groups_of_columns : plan_kind::columns,
-                 {p.columns() == 1 ? "one column of all boxes, sorted and swept in each frame"
-                                   : along[is_in_groups() ? 1 : 0][p.axis],
-                  {{{"u", static_cast<double>(p.across[0])},
-                    {"v", static_cast<double>(p.across[1])},
-                    {"axis", static_cast<double>(p.axis)}}}}}};
+        stage_plans.push_back({is_in_groups() ? plan_kind::groups_of_columns : plan_kind::columns,
+                               {p.columns() == 1 ? "one column of all boxes, sorted and swept in each frame"
+                                                 : along[is_in_groups() ? 1 : 0][p.axis],
+                                {{{"u", static_cast<double>(p.across[0])},
+                                  {"v", static_cast<double>(p.across[1])},
+                                  {"axis", static_cast<double>(p.axis)}}}}});
+        return stage_plans;
     }
     [[nodiscard]] std::vector<omission> left_out() const {
         constexpr const char* why = "so few boxes are tested by brute force";
@@ -245,7 +184,7 @@ public:
         return sum_of([](const worker& w) { return w.searcher.sort_bytes(); });
     }
     [[nodiscard]] std::size_t partition_bytes() const noexcept {
-        return bytes_of(partition_, groups_, cut_, present_boxes_, present_ids_, batch_, static_frame_) +
+        return bytes_of(partition_, groups_, cut_, present_boxes_, present_ids_, batch_, resting_boxes_) +
                sum_of([](const worker& w) { return w.searcher.column_bytes(); });
     }
     [[nodiscard]] std::size_t sweep_bytes() const noexcept {
@@ -270,6 +209,40 @@ private:
         std::size_t begin = 0;
         std::size_t end = 0;
     };
+
+    /// Prepares brute force for few present boxes, or cuts them into columns. These follow a plan, which is made anew
+    /// once it is old or the bounds of the scene have changed.
+    void prepare(Counters& counters) {
+        const std::size_t n = present_.boxes.size();
+        uses_brute_force_ = n <= partition_.brute_force_threshold();
+        // 0 until the boxes are cut: brute force or an exception leaves no plan for the next frame.
+        const std::size_t planned_boxes = std::exchange(planned_boxes_, 0);
+        if (uses_brute_force_) {
+            if (!batch_.fill(present_)) require_valid(boxes_);  // throws
+            return;
+        }
+        const box bounds = bounds_of_sample();
+        const bool needs_plan = is_stale(n, planned_boxes) || bounds_have_changed(bounds, planned_bounds_);
+        if (needs_plan) planned_bounds_ = bounds;
+        plan_age_ = needs_plan ? 0 : plan_age_ + 1;
+        if (!cut_boxes(needs_plan, counters)) require_valid(boxes_);  // throws
+        planned_boxes_ = n;
+        collect_counters(counters);
+    }
+
+    /// Prepares all present boxes, after only the active ones were.
+    void search_all_boxes(Counters& counters) {
+        present_boxes_.clear();
+        present_ids_.clear();
+        resting_boxes_.for_each_present([&](std::uint32_t id) {
+            present_boxes_.push_back(boxes_[id]);
+            present_ids_.push_back(id);
+        });
+        present_ = {present_boxes_, present_ids_};
+        resting_boxes_.give_up();
+        searches_active_ = false;
+        prepare(counters);
+    }
 
     /// Sets `present_`, which refers to copies only if objects are absent; without ids, the index of a box is its id.
     void select_present(std::span<const box> boxes, const membership& objects) {
@@ -410,10 +383,10 @@ private:
     worker_threads threads_;
     std::vector<worker> workers_;  // one per thread
     std::span<const box> boxes_;   // boxes of the current frame
-    static_frame static_frame_;
-    bool is_static_ = false;
+    resting_boxes resting_boxes_;
+    bool searches_active_ = false;  // only those that do not rest
     column_group present_{};
-    std::vector<box> present_boxes_;  // used only if some objects are absent
+    std::vector<box> present_boxes_;  // used only if some objects are absent or were at rest
     std::vector<std::uint32_t> present_ids_;
     brute_force_batch batch_;
     bool uses_brute_force_ = false;

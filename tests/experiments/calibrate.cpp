@@ -119,7 +119,7 @@ TEST_CASE("calibrate measures every cost and checks it on held-out scenes") {
         CHECK(measured.costs.*cost.value > 0);
         CHECK(std::isfinite(measured.costs.*cost.value));
     }
-    CHECK(measured.checks.size() == 7);
+    CHECK(measured.checks.size() == 8);
     for (const aabblab::group_check& check : measured.checks) CHECK(check.held_out.observations > 0);
     CHECK(aabb::machine_costs() == aabb::cost_model{});
 }

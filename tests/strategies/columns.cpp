@@ -398,38 +398,6 @@ TEST_CASE("an invalid box is rejected at any index, and the next frame is comple
     }
 }
 
-TEST_CASE("no boxes are tested while all rest, and all are tested once one moves") {
-    std::vector<box> boxes = random_boxes(3000, 12, 0.7, 4);
-    for (const std::uint32_t group : {100'000U, 200U}) {
-        search_by_columns search(boxes.size(), {.group = group});
-        std::vector<index_pair> expected;
-        const auto is_tested = [&] { return tests_of(search, boxes, expected) > 0; };
-        expected = true_pairs(boxes);
-        CHECK(is_tested());
-        // The second frame shows that nothing moves.
-        CHECK(is_tested());
-        for (int frame = 0; frame < 20; ++frame) CHECK_FALSE(is_tested());
-        // A box outside the sample moves a little. After that, rest is detected one frame later than before.
-        boxes[1234].max[1] = std::nextafter(boxes[1234].max[1], 100.0F);
-        expected = true_pairs(boxes);
-        CHECK(is_tested());
-        CHECK(is_tested());
-        CHECK_FALSE(is_tested());
-        search.remove(77);
-        std::erase_if(expected, [](index_pair p) { return p.a == 77 || p.b == 77; });
-        for (int frame = 0; frame < 3; ++frame) CHECK(is_tested());
-        CHECK_FALSE(is_tested());
-        search.insert(77);
-        expected = true_pairs(boxes);
-        CHECK(is_tested());
-        boxes.push_back(boxes[5]);
-        search.insert(3000);
-        expected = true_pairs(boxes);
-        CHECK(is_tested());
-        boxes.pop_back();
-    }
-}
-
 TEST_CASE("quantized coordinates are monotone, and equal in scalar and vector code") {
     REQUIRE(rc::check([] {
         const auto any_float = [] {
