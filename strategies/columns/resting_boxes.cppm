@@ -11,16 +11,18 @@ export namespace aabb {
 ///
 /// While most boxes move, a frame only compares a sample of them with the previous frame. If enough of it is at rest,
 /// the frame is kept with its pairs. After it, a box that moves becomes active, and stays so until another frame is
-/// kept: once the active boxes that have come to rest have cost as much as keeping a frame does. Likewise, no frame is
-/// kept any more once searching all boxes would have cost less by as much; after frames kept in vain ever more are
-/// skipped (exponential back-off).
+/// kept. That happens once the active boxes that have come to rest have cost as much as keeping a frame does. Likewise,
+/// no frame is kept any more once searching all boxes would have cost less by as much. After frames that were kept in
+/// vain, ever more are skipped (exponential back-off).
 class resting_boxes {
 public:
-    /// Takes the boxes of a frame.
+    /// Takes the boxes of a frame. If only active boxes are to be searched, `accept` must follow once they were found
+    /// to be valid; otherwise the kept frame is given up.
+    /// @throws input_error if the box of an absent object is invalid
     /// @returns whether `active()` are to be searched and `append_pairs` to be called; otherwise all are to be searched
     template <ColumnPartition Partition>
     [[nodiscard]] bool update(const Partition& partition, std::span<const box> boxes, const membership& objects) {
-        const bool was_kept = std::exchange(is_kept_, false);  // an exception leaves no frame kept
+        const bool was_kept = std::exchange(is_kept_, false);
         const bool same_objects = objects.arrivals() == 0 && !objects.any_departures() && boxes.size() == size_;
         size_ = boxes.size();
         wants_to_keep_ = false;
@@ -28,7 +30,6 @@ public:
             active_boxes_.resize(active_.size());
             for (std::size_t i = 0; i < active_.size(); ++i) active_boxes_[i] = boxes[active_[i]];
             if (!active_.empty() && !index_.is_built()) build_index(partition);
-            is_kept_ = true;
             return true;
         }
         if (was_kept) give_up();
@@ -36,6 +37,8 @@ public:
         wants_to_keep_ = at_rest && same_objects && ++skipped_frames_ > backoff_;
         return false;
     }
+
+    void accept() noexcept { is_kept_ = true; }
 
     /// The boxes that do not rest, ascending by id.
     [[nodiscard]] column_group active() const noexcept { return {active_boxes_, active_}; }
@@ -84,7 +87,7 @@ public:
         const auto n = static_cast<double>(resting_ + active_.size());
         const auto active = static_cast<double>(active_.size());
         const double ns_of_all = n * ns.search_box + static_cast<double>(pairs_.size()) * ns.search_pair;
-        const double ns_to_look_up = active * ns.active_box + static_cast<double>(tests_) * ns.column_test;
+        const double ns_to_look_up = std::max(active * ns.active_box, static_cast<double>(tests_) * ns.column_test);
         const double ns_of_active = n * ns.watch_box + ns_to_look_up;
         const double ns_to_keep = n * 3 * ns.column_entry + static_cast<double>(pairs.size()) * ns.test_pair;
         gain_ += ns_of_all - ns_of_active;
@@ -144,8 +147,10 @@ private:
     [[nodiscard]] bool take_changes(std::span<const box> boxes, const membership& objects) {
         if (std::exchange(is_new_, false)) begin_rest(objects);
         boxes_.resize(boxes.size());
-        states_.resize(boxes.size(), state::absent);
+        states_.resize(std::max(states_.size(), boxes.size()),
+                       state::absent);  // one that left may have no box any more
         if (objects.any_departures() || objects.arrivals() > 0) take_objects(objects);
+        states_.resize(boxes.size());
         find_moved(boxes);
         const std::size_t known = active_.size();
         std::size_t moving = 0;

@@ -34,15 +34,16 @@ public:
     /// Appends the pairs {id of a query box, id of an indexed box} of boxes that overlap, each once.
     /// @param queries valid boxes with their ids
     /// @param boxes the indexed boxes by id
-    /// @param most_tests limit on the vector tests
+    /// @param most_tests limit on the tests, of vectors and of pairs
     /// @param counts whether pairs with the indexed box of this id count
-    /// @returns the number of vector tests, or nullopt above the limit; then some pairs are missing
+    /// @returns the number of vector tests, where each visited column or group counts as one; or nullopt above the
+    /// limit, and then some pairs are missing
     template <class Counts>
     [[nodiscard]] std::optional<std::uint64_t> look_up(const column_group& queries, std::span<const box> boxes,
                                                        std::uint64_t most_tests, std::vector<index_pair>& pairs,
                                                        Counts counts) {
         boxes_ = boxes;
-        tests_ = 0;
+        tests_ = exact_tests_ = 0;
         most_tests_ = most_tests;
         if (!look_up_in(nodes_.front(), queries, pairs, counts, /*depth=*/0)) return std::nullopt;
         return tests_;
@@ -73,7 +74,7 @@ private:
 
     /// The entries of a bucket, by index from the first of the node.
     struct bucket {
-        std::uint32_t reach;  ///< the first that reaches into it
+        std::uint32_t reach;  ///< the first that ends in it or in a later bucket of the column
         std::uint32_t end;    ///< the one after its last
     };
 
@@ -108,7 +109,7 @@ private:
         // Four boxes a bucket, so that those of a column stay in a cache; and at least a vector of buckets.
         constexpr auto fewest = static_cast<std::uint32_t>(std::bit_width(width - 1));
         const std::uint32_t bits = std::max(plan.bucket_bits(to.boxes), fewest + 2) - 2;
-        const std::size_t most_copies = 65'536 + 16 * group.boxes.size();
+        const std::size_t most_copies = std::min(65'536 + 16 * group.boxes.size(), std::size_t{1} << 30);
         if (lists_.fill_buckets(group.boxes, group.ids, plan, bits, most_copies) != fill_result::complete) {
             plan.across = {1, 1};  // a single column has no copies
             return build_columns(group, plan, to);
@@ -154,23 +155,29 @@ private:
         }
     }
 
-    /// Finds the range of entries of each bucket that queries test: from the first that reaches into it.
+    /// Finds the entries that queries of each bucket test: from the first that does not end before it.
     void append_buckets(const node& to) {
         const column_block& block = lists_.block();
         const std::uint32_t buckets = to.plan.columns() << to.bucket_bits;
         const std::uint32_t in_column = std::uint32_t{1} << to.bucket_bits;
         buckets_.resize(buckets_.size() + buckets);
         bucket* const ranges = &buckets_[to.first_bucket];
-        const auto begin_of = [&](std::uint32_t b) -> std::uint32_t {
-            if (b == 0) return 0;
-            // Columns begin at whole vectors.
-            return b % in_column == 0 ? (block.ends[b - 1] + width - 1) / width * width : block.ends[b - 1];
-        };
-        for (std::uint32_t b = 0; b < buckets; ++b) ranges[b] = {.reach = begin_of(b), .end = block.ends[b]};
-        for (std::uint32_t b = 0; b < buckets; ++b)
-            for (std::uint32_t i = begin_of(b); i < block.ends[b]; ++i)
-                for (std::uint32_t later = b + 1; later <= block.entries[i].end_bucket; ++later)
-                    ranges[later].reach = std::min(ranges[later].reach, i);
+        for (std::uint32_t b = 0; b < buckets; ++b) {
+            const std::uint32_t last = b / in_column * in_column + in_column - 1;  // of the column
+            ranges[b] = {.reach = block.ends[last], .end = block.ends[b]};
+        }
+        std::uint32_t begin = 0;  // of the bucket
+        for (std::uint32_t b = 0; b < buckets; ++b) {
+            if (b % in_column == 0) begin = (begin + width - 1) / width * width;  // columns begin at whole vectors
+            for (std::uint32_t i = begin; i < block.ends[b]; ++i) {
+                std::uint32_t& reach = ranges[block.entries[i].end_bucket].reach;
+                reach = std::min(reach, i);
+            }
+            begin = block.ends[b];
+        }
+        // Whatever reaches into a later bucket of the column ends no earlier.
+        for (std::uint32_t b = buckets - 1; b > 0; --b)
+            if (b % in_column != 0) ranges[b - 1].reach = std::min(ranges[b - 1].reach, ranges[b].reach);
     }
 
     template <class Counts>
@@ -206,7 +213,7 @@ private:
             prefetch_entries(in, k + queries_ahead);
             const std::uint32_t q = order_[k];
             find_candidates(in, q, queries.ids[q] & ~column_entry::index_mask);
-            if (tests_ > most_tests_) return false;
+            if (tests_ + exact_tests_ > most_tests_) return false;
             if (candidate_count_ > most_waiting) append_overlapping(queries, pairs, counts);
         }
         append_overlapping(queries, pairs, counts);
@@ -298,13 +305,14 @@ private:
 
     void make_room(std::size_t candidates) {
         if (candidates <= candidate_ids_.size()) return;
-        candidate_ids_.resize(2 * candidates);
         candidate_queries_.resize(2 * candidates);
+        candidate_ids_.resize(2 * candidates);  // last: its size says that both have room
     }
 
     /// Tests the candidates exactly, appends the pairs that overlap and count, and empties the list of candidates.
     template <class Counts>
     void append_overlapping(const column_group& queries, std::vector<index_pair>& pairs, Counts counts) {
+        exact_tests_ += candidate_count_;
         std::size_t next = pairs.size();
         pairs.resize(next + candidate_count_);
         for (std::size_t c = 0; c < candidate_count_; ++c) {
@@ -338,7 +346,7 @@ private:
     std::vector<std::uint32_t> candidate_queries_;  // queries that may overlap
     std::vector<std::uint32_t> candidate_ids_;      // these entries, as marked ids
     std::size_t candidate_count_ = 0;
-    std::uint64_t tests_ = 0, most_tests_ = 0;  // vector tests of the current queries
+    std::uint64_t tests_ = 0, exact_tests_ = 0, most_tests_ = 0;  // vector tests of the current queries
 };
 
 }  // namespace aabb

@@ -118,6 +118,7 @@ public:
         else
             select_present(boxes, objects);
         prepare(counters);
+        if (searches_active_) resting_boxes_.accept();
     }
 
     /// Appends the overlapping pairs: those of boxes at rest, and those of the others by brute force, in columns over
@@ -157,21 +158,23 @@ public:
         if (searches_active_)
             stage_plans.push_back({plan_kind::resting_boxes,
                                    {"{resting} boxes at rest are kept with their pairs; {active} others are searched, "
-                                    "and looked up among these",
+                                    "and looked up among those at rest",
                                     {{{"resting", static_cast<double>(resting_boxes_.resting())},
                                       {"active", static_cast<double>(resting_boxes_.active().ids.size())}}}}});
         if (uses_brute_force_) return stage_plans;
         const column_plan& p = plan();
         stage_plans.push_back({is_in_groups() ? plan_kind::groups_of_columns : plan_kind::columns,
-                               {p.columns() == 1 ? "one column of all boxes, sorted and swept in each frame"
-                                                 : along[is_in_groups() ? 1 : 0][p.axis],
+                               {p.columns() > 1    ? along[is_in_groups() ? 1 : 0][p.axis]
+                                : searches_active_ ? "one column of the boxes that move, sorted and swept in each frame"
+                                                   : "one column of all boxes, sorted and swept in each frame",
                                 {{{"u", static_cast<double>(p.across[0])},
                                   {"v", static_cast<double>(p.across[1])},
                                   {"axis", static_cast<double>(p.axis)}}}}});
         return stage_plans;
     }
     [[nodiscard]] std::vector<omission> left_out() const {
-        constexpr const char* why = "so few boxes are tested by brute force";
+        const char* const why = searches_active_ ? "so few boxes move that they are tested by brute force"
+                                                 : "so few boxes are tested by brute force";
         if (uses_brute_force_) return {{absence::partition, why}, {absence::sort, why}};
         return {};
     }
@@ -239,9 +242,10 @@ private:
             present_ids_.push_back(id);
         });
         present_ = {present_boxes_, present_ids_};
+        prepare(counters);
+        // Only now, so that after an exception another search does the same.
         resting_boxes_.give_up();
         searches_active_ = false;
-        prepare(counters);
     }
 
     /// Sets `present_`, which refers to copies only if objects are absent; without ids, the index of a box is its id.

@@ -173,6 +173,26 @@ TEST_CASE("boxes that have come to rest are kept again once that is worth its co
     CHECK(resting_and_active(search) == std::array<double, 2>{5000, 0});
 }
 
+TEST_CASE("boxes at rest that leave with their ids, or come in a rejected frame, leave no pairs") {
+    const std::vector<box> boxes(100, cube(0, 1));
+    search_by_columns search(boxes.size());
+    for (int frame = 0; frame < 4; ++frame) CHECK(found_by(search, boxes) == overlapping(boxes));
+    const std::vector<box> fewer(boxes.begin(), boxes.end() - 1);
+    search.remove(99);
+    CHECK(found_by(search, fewer) == overlapping(fewer));
+    for (int frame = 0; frame < 4; ++frame) static_cast<void>(found_by(search, fewer));
+    // One comes with an invalid box, and leaves before the frame is repeated.
+    std::vector<box> more = fewer;
+    more.push_back({{1, 1, 1}, {0, 0, 0}});
+    search.insert(99);
+    CHECK_THROWS_AS(search.update(more), input_error);
+    search.remove(99);
+    for (int frame = 0; frame < 4; ++frame) {
+        CHECK(found_by(search, boxes) == overlapping(fewer));
+        CHECK(found_by(search, fewer) == overlapping(fewer));
+    }
+}
+
 TEST_CASE("rest is given up where queries would take too many tests") {
     // Boxes in one place along the columns, which a query cannot tell apart.
     std::vector<box> boxes(4000, box{{0, 0, 0}, {1, 1, 1}});
