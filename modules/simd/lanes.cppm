@@ -14,7 +14,7 @@ import :width;
 namespace aabb::simd::detail {
 
 #if defined(__AVX512F__)
-[[gnu::always_inline]] inline void store_of_sixteen(void* to, const void* from, std::uint32_t set) noexcept {
+[[gnu::always_inline]] inline void compress_sixteen(void* to, const void* from, std::uint32_t set) noexcept {
     _mm512_storeu_si512(to, _mm512_maskz_compress_epi32(static_cast<__mmask16>(set), _mm512_loadu_si512(from)));
 }
 #endif
@@ -31,7 +31,7 @@ inline constexpr std::array<std::uint64_t, 256> packed_places = [] {
     return permutations;
 }();
 
-[[gnu::always_inline]] inline void store_of_eight(void* to, const void* from, std::uint32_t set) noexcept {
+[[gnu::always_inline]] inline void compress_eight(void* to, const void* from, std::uint32_t set) noexcept {
     const __m256i places = _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(static_cast<long long>(packed_places[set])));
     _mm256_storeu_si256(static_cast<__m256i*>(to),
                         _mm256_permutevar8x32_epi32(_mm256_loadu_si256(static_cast<const __m256i*>(from)), places));
@@ -91,22 +91,29 @@ inline constexpr std::uint32_t every_lane = static_cast<std::uint32_t>((std::uin
     return end >= width ? every_lane : (std::uint32_t{1} << end) - 1;
 }
 
+/// Whether a permutation of lanes may depend on data: processors with vectors of four lanes have none that does.
+inline constexpr bool has_compress = width > 4;
+
+/// The lanes whose bit is set, one after the other; those behind them are unspecified.
+[[nodiscard, gnu::always_inline]] inline words compress(words v, std::uint32_t set) noexcept {
+    words packed{};
+#if defined(__AVX512F__)
+    if constexpr (width == 16) return detail::compress_sixteen(&packed, &v, set), packed;
+#endif
+#if defined(__AVX2__)
+    if constexpr (width == 8) return detail::compress_eight(&packed, &v, set), packed;
+#endif
+    for (std::size_t i = 0, n = 0; i < width; n += set >> i & 1U, ++i) packed[n] = v[i];
+    return packed;
+}
+
 /// Compress-store: writes the lanes whose bit is set to `to`, one after the other. `to` must have room for a whole
 /// vector, since the elements behind the stored lanes may be overwritten.
 /// @returns the number of stored lanes
 [[gnu::always_inline]] inline std::size_t compress_store(std::uint32_t* to, words v, std::uint32_t set) noexcept {
     const auto stored = static_cast<std::size_t>(std::popcount(set));
-#if defined(__AVX512F__)
-    if constexpr (width == 16) return detail::store_of_sixteen(to, &v, set), stored;
-#endif
-#if defined(__AVX2__)
-    if constexpr (width == 8) return detail::store_of_eight(to, &v, set), stored;
-#endif
-    std::size_t n = 0;
-    for (std::size_t i = 0; i < width; ++i) {
-        to[n] = v[i];
-        n += set >> i & 1U;
-    }
+    if constexpr (has_compress) return store(to, compress(v, set)), stored;
+    for (std::size_t i = 0, n = 0; i < width; n += set >> i & 1U, ++i) to[n] = v[i];
     return stored;
 }
 

@@ -99,6 +99,30 @@ export namespace aabb::simd {
     store_vector(std::integral_constant<std::size_t, 3>{});
 }
 
+/// Stores the pair of `id` and lane l, the lesser first, for each lane l in the set, one after the other. `to` must
+/// have room for `width` pairs, since those behind the stored ones may be overwritten.
+/// @returns the number of stored pairs
+[[gnu::always_inline]] inline std::size_t store_ordered_pairs(std::uint32_t* to, std::uint32_t id, words ids,
+                                                              std::uint32_t set) noexcept {
+    const words first = broadcast(id);
+    const words second = has_compress ? compress(ids, set) : ids;
+    const words lesser = first < second ? first : second;
+    const words greater = first < second ? second : first;
+    if constexpr (!has_compress) {
+        for (std::size_t i = 0, n = 0; i < width; n += 2 * (set >> i & 1U), ++i) {
+            to[n] = lesser[i];
+            to[n + 1] = greater[i];
+        }
+        return static_cast<std::size_t>(std::popcount(set));
+    }
+    constexpr auto lower_half = [](std::size_t i) { return i / 2 + i % 2 * width; };
+    constexpr auto upper_half = [](std::size_t i) { return width / 2 + i / 2 + i % 2 * width; };
+    const auto lanes = std::make_index_sequence<width>{};
+    store(to, shuffled<words, lower_half>(lesser, greater, lanes));
+    store(to + width, shuffled<words, upper_half>(lesser, greater, lanes));
+    return static_cast<std::size_t>(std::popcount(set));
+}
+
 using halves = std::uint16_t __attribute__((vector_size(4 * width)));  ///< two u16 per u32 lane
 
 using narrow_halves = std::uint16_t __attribute__((vector_size(2 * width)));

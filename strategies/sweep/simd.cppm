@@ -102,6 +102,32 @@ private:
         }
     };
 
+    /// The boxes of a vector of entries as a structure of arrays, and their ids.
+    struct vector_of_boxes {
+        simd::floats bounds[6];
+        simd::words ids;
+
+        // Inlined, so that the loop over candidates keeps the vector in registers.
+        [[gnu::always_inline]] inline vector_of_boxes(const column_block& block, const column_entry* entries) noexcept {
+            box boxes[width];
+            std::uint32_t ids_of_boxes[width];
+            for (std::size_t l = 0; l < width; ++l) {
+                const std::uint32_t i = entries[l].index & column_entry::index_mask;
+                boxes[l] = block.boxes[i];
+                ids_of_boxes[l] = block.id_of(i);
+            }
+            simd::load_rows_of_six(boxes[0].min.at, bounds);
+            ids = simd::load(ids_of_boxes);
+        }
+
+        /// Bit l is set if box l overlaps `b`.
+        [[nodiscard]] inline std::uint32_t overlap_mask(const box& b) const noexcept {
+            simd::flags overlapping = (bounds[0] <= b.max[0]) & (bounds[3] >= b.min[0]);
+            for (int k = 1; k < 3; ++k) overlapping &= (bounds[k] <= b.max[k]) & (bounds[3 + k] >= b.min[k]);
+            return simd::bits(overlapping);
+        }
+    };
+
     /// The lanes of a vector that each of a few entries may overlap.
     using lane_overlaps = std::array<std::uint16_t, width>;
 
@@ -166,11 +192,25 @@ private:
     /// Tests the candidates exactly, appends the overlapping pairs, and empties the list of candidates.
     /// @param window the entry from which the candidates number vectors
     void append_overlapping(const column_block& block, std::size_t window, std::vector<index_pair>& pairs) {
-        std::size_t next = pairs.size(), most = next;
+        if (candidate_count_ == 0) return;
+        std::size_t lanes = 0;
         for (std::size_t c = 0; c < candidate_count_; ++c)
-            most += static_cast<std::size_t>(std::popcount(met_[c] & simd::every_lane));
+            lanes += static_cast<std::size_t>(std::popcount(met_[c] & simd::every_lane));
+        const std::size_t before = pairs.size(), most = before + lanes + width;
         if (most > pairs.capacity()) pairs.reserve(std::max(most, 2 * pairs.capacity()));
         pairs.resize(most);
+        // By vectors, all boxes of those in which there are candidates are loaded; else, one for each candidate.
+        const std::size_t vectors = (met_[candidate_count_ - 1] >> width) - (met_[0] >> width) + 1;
+        const bool by_vectors = vectors * width + candidate_count_ < lanes;
+        const index_pair* const end = by_vectors ? store_by_vectors(block, window, &pairs[before])
+                                                 : store_one_by_one(block, window, &pairs[before]);
+        pairs.resize(static_cast<std::size_t>(end - pairs.data()));
+        candidate_count_ = 0;
+    }
+
+    /// @returns the end of the stored pairs
+    [[nodiscard]] index_pair* store_one_by_one(const column_block& block, std::size_t window,
+                                               index_pair* next) const noexcept {
         for (std::size_t c = 0; c < candidate_count_; ++c) {
             const std::uint32_t met = met_[c];  // the number of a vector, then a bit per lane
             const std::uint32_t i = block.entries[candidates_[c]].index & column_entry::index_mask;
@@ -180,12 +220,27 @@ private:
             for (std::uint32_t lanes = met & simd::every_lane; lanes != 0; lanes &= lanes - 1) {
                 const std::uint32_t j = vector[std::countr_zero(lanes)].index & column_entry::index_mask;
                 // No branch: a pair that does not overlap is overwritten by the next one.
-                pairs[next] = ordered_pair(id, block.id_of(j));
+                *next = ordered_pair(id, block.id_of(j));
                 next += overlaps(a, block.boxes[j]);
             }
         }
-        pairs.resize(next);
-        candidate_count_ = 0;
+        return next;
+    }
+
+    /// Tests an entry against all lanes of a vector at once, whose boxes are loaded for all its candidates.
+    /// @returns the end of the stored pairs, behind which `width` more may be overwritten
+    [[nodiscard]] index_pair* store_by_vectors(const column_block& block, std::size_t window,
+                                               index_pair* next) const noexcept {
+        for (std::size_t c = 0; c < candidate_count_;) {
+            const std::uint32_t number = met_[c] >> width;
+            const vector_of_boxes vector(block, &block.entries[window + number * width]);
+            for (; c < candidate_count_ && met_[c] >> width == number; ++c) {
+                const std::uint32_t i = block.entries[candidates_[c]].index & column_entry::index_mask;
+                next += simd::store_ordered_pairs(&next->a, block.id_of(i), vector.ids,
+                                                  vector.overlap_mask(block.boxes[i]) & met_[c]);
+            }
+        }
+        return next;
     }
 
     /// Converts a sorted list to entries of one column, quantized over its bounds. Each is a bucket of its own, whose

@@ -115,6 +115,26 @@ TEST_CASE("groups of any size find the same pairs, in the same order on any numb
     }
 }
 
+TEST_CASE("many pairs per box are exact where different ends have the same code") {
+    REQUIRE(rc::check([] {
+        const std::size_t n = *rc::gen::inRange<std::size_t>(100, 700);
+        std::mt19937 random(*rc::gen::arbitrary<unsigned>());
+        // Ends lie within half a code, 2^-16 of the world, around five planes: many boxes are apart by less than that.
+        const auto end_near = [&](std::uint32_t plane) {
+            return std::ldexp(static_cast<float>(plane << 18) + static_cast<float>(random() % 16) - 8, -20);
+        };
+        std::vector<box> boxes(n);
+        for (box& b : boxes)
+            for (int k = 0; k < 3; ++k) {
+                const std::uint32_t first = random() % 5, last = std::min<std::uint32_t>(first + random() % 4, 4);
+                b.min[k] = end_near(first);
+                b.max[k] = std::max(b.min[k], end_near(last));
+            }
+        const auto search = search_of(columns_with(*rc::gen::element<std::string>("", ":group=60", ":few=0")), n);
+        RC_ASSERT(found_by(*search, boxes) == overlapping(boxes));
+    }));
+}
+
 TEST_CASE("boxes that exceed one group are divided into groups") {
     const std::vector<box> boxes = random_boxes(50'000, 80, 1, 2);
     CHECK(found_by(*search_of(columns_with(""), boxes.size()), boxes) == true_pairs(boxes));
