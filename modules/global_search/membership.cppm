@@ -28,7 +28,15 @@ public:
         if (ids.empty()) return;
         const std::size_t most = std::ranges::max(ids);
         if (most >= state_.size()) state_.resize(most + 1, state::absent);
-        for (const std::uint32_t id : ids) insert(id);
+        state* const states = state_.data();
+        for (std::size_t i = 0; i < ids.size();) {
+            // Counted apart, since members would be read and written for each object.
+            const std::size_t first = i;
+            while (i < ids.size() && states[ids[i]] == state::absent) states[ids[i++]] = state::arriving;
+            arrivals_ += i - first;
+            size_ += i - first;
+            if (i < ids.size()) insert(ids[i++]);  // leaving, or already present
+        }
     }
 
     /// Makes an object absent from the next frame on. Until that frame it is `leaving`, since lists still contain it.

@@ -88,7 +88,7 @@ public:
             const observation seen = observe_motion(boxes, any_arrivals);
             switch (actions[static_cast<std::size_t>(state_)][static_cast<std::size_t>(seen)]) {
                 case action::search: search_->update(boxes); break;
-                case action::keep: start_list(boxes, {.frames = 0, .margin = 0}); break;
+                case action::keep: start_list(boxes, list_after_sample(boxes)); break;
                 // Objects inserted since the boxes were kept have no valid kept box, so their motion is unknown.
                 case action::plan: plan(boxes, seen == observation::changed && age_ > 0 && !any_arrivals); break;
                 case action::repeat: has_rested_ = true; break;
@@ -172,8 +172,7 @@ private:
     }
     [[nodiscard]] std::string_view why_no_list() const noexcept {
         if (is_below_list_threshold()) return "none yet, not worth its cost for so few boxes";
-        if (expected_ < fewest_frames_of_first_list) return "none yet, not worth its cost in so few frames";
-        return "none yet, boxes move too far or arrive too often";
+        return "none yet, not worth its cost by the motion seen so far";
     }
     /// Whether the pairs marked as certain are guaranteed to overlap in this frame.
     [[nodiscard]] bool certain_pairs_hold() const noexcept { return moved_.in_both_directions <= margin_; }
@@ -250,18 +249,24 @@ private:
                !is_list_worth_it(objects_.size(), overlapping, static_cast<std::size_t>(estimate.within_margin / 2));
     }
 
-    /// Plans the first list, before any motion has been observed: with a default margin, or without one if that made
-    /// the list too long. If too few frames are left, returns nullopt and has a sample watched instead.
-    [[nodiscard]] std::optional<next_list> first_list(std::span<const box> boxes) {
+    /// Nothing is known yet about the motion: watches a sample of boxes, which is to show that a list will serve.
+    void begin_sample(std::span<const box> boxes) {
         estimate_.pairs = 0;
-        estimate_.resample(boxes, objects_, ids_drawn_);
-        if (estimate_.horizon.frames_left < fewest_frames_of_first_list) {
-            backoff_.begin_with_sample();
-            static_cast<void>(observe_sample(boxes));
-            return std::nullopt;
-        }
-        const double margin = typical_extents(extents_of_first_margin, boxes, objects_);
-        return next_list{.frames = 0, .margin = is_far_too_long(boxes, margin) ? 0 : margin};
+        backoff_.begin_with_sample();
+        static_cast<void>(observe_sample(boxes));
+        awaits_first_list_ = true;
+    }
+
+    /// What is kept once a sample has shown that a list will serve: the pairs until a box moves, to measure how far it
+    /// moves. The first list of many frames has a default margin instead, since a young sample says little about them.
+    [[nodiscard]] next_list list_after_sample(std::span<const box> boxes) {
+        next_list next{.frames = 0, .margin = 0};
+        const double least = plan_list(estimate_).margin;
+        if (!std::exchange(awaits_first_list_, false) || estimate_.horizon.frames_left < many_frames || !(least > 0))
+            return next;
+        const double margin = std::max(least, typical_extents(extents_of_first_margin, boxes, objects_));
+        if (!is_far_too_long(boxes, margin)) next.margin = margin;
+        return next;
     }
 
     /// Repeats the last plan if its list lasted as planned, else plans for the displacement since boxes were kept.
@@ -304,7 +309,7 @@ private:
         return next;
     }
 
-    /// Starts a list with the configured, estimated or default margin. If none is worth its cost, frames are searched:
+    /// Starts a list with the configured or estimated margin. If none is worth its cost, frames are searched:
     /// up to `longest_watch` of them while motion is observed, then for a back-off.
     void plan(std::span<const box> boxes, bool is_motion_known) {
         std::optional<next_list> next;
@@ -316,7 +321,7 @@ private:
             const bool needs_no_margin = law.age() == 0 || config_.every == 1;
             next = next_list{.frames = 0, .margin = needs_no_margin ? 0 : law.displacement_after(config_.every - 1)};
         } else if (state_ == state::nothing) {
-            next = first_list(boxes);
+            begin_sample(boxes);
         } else {
             next = planned_list(boxes, is_motion_known);
         }
@@ -406,11 +411,9 @@ private:
 
     /// Searching fewer boxes takes no longer than watching them.
     static constexpr std::size_t fewest_boxes = 2 * simd::width + 1;
-    /// The least number of remaining frames for which the first frame gets a list: its motion is unknown, and a list in
-    /// newly allocated memory takes as long as searching several frames.
-    static constexpr std::size_t fewest_frames_of_first_list = 64;
     /// The margin of the first list, in typical extents: the best single margin over the benchmark scenes.
     static constexpr double extents_of_first_margin = 0.1;
+    static constexpr std::size_t many_frames = 64;
     /// Frames for which boxes are watched before lists are given up.
     static constexpr std::size_t longest_watch = 8;
     /// A plan is repeated at most this often, since the number of pairs may change meanwhile.
@@ -439,6 +442,7 @@ private:
     unsigned repeated_ = 0;           // number of lists made since by the same plan
     list_estimate estimate_;
     list_backoff backoff_;
+    bool awaits_first_list_ = false;
     std::uint32_t ids_drawn_ = 0;  // see `draw_id`
     std::size_t frames_ = 0;       // number of earlier frames
     std::size_t expected_ = std::numeric_limits<std::size_t>::max();

@@ -12,12 +12,12 @@ export namespace aabb {
 /// inserted object triggers a search.
 ///
 /// Without a configured margin, each list gets the cheapest one (`list_plan`), estimated from the displacement under
-/// the last list (`displacement_law`), or the largest of those that cost about as little. The first list has no such
-/// estimate and uses a tenth of the typical extent. If no list is worth its cost, or boxes moved much farther than
-/// estimated, frames are searched directly and a sample of boxes is watched in some of them (`list_backoff`). If few
-/// frames are expected (`global_stage::expect`), the first list waits until such a sample shows that the remaining
-/// frames repay it. If boxes move much less than estimated, the list is reduced to a smaller margin once that is worth
-/// its cost. Searches are assumed to cost what `columns` costs; with a slower search, lists are given up too early.
+/// the last list (`displacement_law`), or the largest of those that cost about as little. If no list is worth its cost,
+/// or boxes moved much farther than estimated, frames are searched directly and a sample of boxes is watched in some of
+/// them (`list_backoff`). The first list, too, waits until such a sample shows that the remaining frames repay it
+/// (`global_stage::expect`); if many remain, its margin is at least a tenth of the typical extent. If boxes move much
+/// less than estimated, the list is reduced to a smaller margin once that is worth its cost. Searches are assumed to
+/// cost what `columns` costs; with a slower search, lists are given up too early.
 ///
 /// With `every` the search runs after a fixed number of frames, whatever has moved by then: pairs at a distance of more
 /// than two margins at the last search are false negatives until the next one. There are never false positives.
