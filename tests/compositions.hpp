@@ -67,41 +67,58 @@ inline bool wants_every_composition() {
         throw std::invalid_argument("AABBLAB_COMPOSITIONS is '" + std::string(wanted) + "'; it must be all or unset");
     return wanted != nullptr;
 }
+// The address sanitizer looks for faults of memory, which hardly depend on combinations, and is slow.
+#if __has_feature(address_sanitizer)
+inline constexpr bool has_sanitizer = true;
+#else
+inline constexpr bool has_sanitizer = false;
+#endif
+
 /// Exact compositions for scenes of boxes. The selection covers every valid combination of strategies of three kinds,
-/// with their settings: hardly any fault needs four (Kuhn, Wallace, Gallo 2004).
+/// with their settings: hardly any fault needs four (Kuhn, Wallace, Gallo 2004). With a sanitizer, of two kinds.
 inline std::vector<aabb::composition> global_compositions() {
-    using triple = std::pair<aabb::strategy_kind, std::string>;
+    using combination = std::pair<std::size_t, std::string>;  ///< which kinds, and their strategies
     constexpr aabb::stage stage = aabb::stage::global_search;
+    const std::vector<aabb::strategy_kind> kinds = kinds_of(stage);
+    const std::size_t covered = has_sanitizer ? 2 : 3;
     std::vector<aabb::composition> exact = all_compositions(stage);
     std::erase_if(exact, [](const aabb::composition& c) { return !is_exact(c, stage) || !needs_meshes(c).empty(); });
     if (wants_every_composition()) return exact;
-    std::vector<std::pair<aabb::composition, std::vector<triple>>> candidates;
+    std::vector<std::pair<aabb::composition, std::vector<combination>>> candidates;
     for (const aabb::composition& c : exact) {
-        std::vector<triple>& triples = candidates.emplace_back(c, std::vector<triple>()).second;
-        for (const aabb::strategy_kind left_out : kinds_of(stage)) {
-            aabb::composition others = c;
-            others[left_out] = {};
-            triples.emplace_back(left_out, to_text(others, stage));
+        std::vector<combination>& covers = candidates.emplace_back(c, std::vector<combination>()).second;
+        for (std::size_t chosen = 0; chosen < std::size_t{1} << kinds.size(); ++chosen) {
+            if (static_cast<std::size_t>(std::popcount(chosen)) != covered) continue;
+            aabb::composition of_chosen = c;
+            for (std::size_t k = 0; k < kinds.size(); ++k)
+                if ((chosen >> k & 1U) == 0) of_chosen[kinds[k]] = {};
+            covers.emplace_back(chosen, to_text(of_chosen, stage));
         }
     }
     std::vector<aabb::composition> selection;
-    std::set<triple> seen;
-    // First those with the most new triples.
-    for (std::ptrdiff_t least_new = 4; least_new > 0; --least_new)
-        for (const auto& [composition, triples] : candidates) {
-            if (std::ranges::count_if(triples, [&](const triple& t) { return !seen.contains(t); }) < least_new)
+    std::set<combination> seen;
+    // First those with the most new combinations.
+    for (auto least_new = static_cast<std::ptrdiff_t>(candidates.front().second.size()); least_new > 0; --least_new)
+        for (const auto& [composition, covers] : candidates) {
+            if (std::ranges::count_if(covers, [&](const combination& c) { return !seen.contains(c); }) < least_new)
                 continue;
-            seen.insert(triples.begin(), triples.end());
+            seen.insert(covers.begin(), covers.end());
             selection.push_back(composition);
         }
     return selection;
 }
 /// The selection combines every tree with the exact triangle test, and each default tree with the other tests: a test
-/// does not depend on the tree that calls it.
+/// does not depend on the tree that calls it. With a sanitizer, one strategy at most is not the default.
 inline std::vector<aabb::composition> local_compositions() {
     std::vector<aabb::composition> compositions = all_compositions(aabb::stage::local_detection);
     if (wants_every_composition()) return compositions;
     std::erase_if(compositions, [](const aabb::composition& c) {
+        if (has_sanitizer) {
+            const aabb::composition defaults;
+            return std::ranges::count_if(kinds_of(aabb::stage::local_detection), [&](aabb::strategy_kind kind) {
+                       return to_text(c[kind]) != to_text(defaults[kind]);
+                   }) > 1;
+        }
         return c[aabb::strategy_kind::triangle].name != "exact" && !c[aabb::strategy_kind::tree].settings.empty();
     });
     return compositions;

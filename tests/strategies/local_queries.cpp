@@ -53,7 +53,7 @@ std::vector<index_pair> expected(const mesh& a, const pose& pose_a, const mesh& 
 
 TEST_CASE("every exact composition finds exactly the intersecting triangles of two meshes, in every query", "[long]") {
     const std::vector<aabb::composition> compositions = exact_local_compositions();
-    REQUIRE(compositions.size() >= 33);
+    REQUIRE(compositions.size() >= (has_sanitizer ? 10 : 33));
     REQUIRE(rc::check([&] {
         mesh a = any_mesh();
         const mesh b = any_mesh();
