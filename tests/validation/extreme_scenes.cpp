@@ -8,9 +8,14 @@ using namespace aabb;
 
 namespace {
 
-std::vector<extreme_judge> judges() {
+enum class objects : std::uint8_t { boxes, meshes };
+
+/// The judges of these scenes, each of which computes a ground truth.
+std::vector<extreme_judge> judges_of(objects what) {
     std::vector<extreme_judge> result;
-    for (extreme_scene& scene : extreme_scenes(extreme_size::small)) result.emplace_back(std::move(scene));
+    for (extreme_scene& scene : extreme_scenes(extreme_size::small))
+        if (what == objects::boxes ? static_cast<bool>(scene.make_boxes) : static_cast<bool>(scene.make_meshes))
+            result.emplace_back(std::move(scene));
     return result;
 }
 
@@ -21,6 +26,7 @@ void require_expected(const extreme_scene& scene, const extreme_result& result, 
 
 }  // namespace
 
+// With a sanitizer, without engines, which take long: other tests run them.
 TEST_CASE("every global search is exact on every extreme scene, or rejects it as required") {
     std::vector<aabb::composition> compositions = global_compositions();
     // Cells of a configured edge do not fit in memory in worlds of any size.
@@ -29,10 +35,9 @@ TEST_CASE("every global search is exact on every extreme scene, or rejects it as
                                    [](const setting& s) { return s.name == "cell_size"; });
     });
     REQUIRE(compositions.size() > 50);
-    for (const extreme_judge& judge : judges()) {
-        if (!judge.scene().make_boxes) continue;
+    for (const extreme_judge& judge : judges_of(objects::boxes)) {
         for (const engine_info& engine : engines()) {
-            if (!engine.searches_boxes) continue;
+            if (!engine.searches_boxes || has_sanitizer) continue;
             INFO(engine.name);
             require_expected(judge.scene(), judge.judge([&] { return make_box_engine(engine.name); }));
         }
@@ -43,11 +48,11 @@ TEST_CASE("every global search is exact on every extreme scene, or rejects it as
     }
 }
 
-TEST_CASE("every local detection is exact on every extreme scene, or rejects it as required") {
-    for (const extreme_judge& judge : judges()) {
-        if (!judge.scene().make_meshes) continue;
+// One test, since most of its time passes with the ground truth.
+TEST_CASE("every local detection and distance is exact on every extreme scene, or rejected as required") {
+    for (const extreme_judge& judge : judges_of(objects::meshes)) {
         for (const engine_info& engine : engines()) {
-            if (!engine.collides_meshes) continue;
+            if (!engine.collides_meshes || has_sanitizer) continue;
             INFO(engine.name);
             require_expected(judge.scene(), judge.judge([&] { return make_mesh_engine(engine.name); }), engine.exact);
         }
@@ -57,16 +62,9 @@ TEST_CASE("every local detection is exact on every extreme scene, or rejects it 
             require_stated_memory(judge.scene(), result);
             require_expected(judge.scene(), result);
         }
-    }
-}
-
-TEST_CASE(
-    "through every tree, distances are 0 exactly where meshes meet, and right elsewhere, on every extreme scene") {
-    for (const extreme_judge& judge : judges()) {
-        if (!judge.scene().make_meshes) continue;
         for (const aabb::composition& c : compositions_of_every_tree()) {
             if (!c[strategy_kind::tree].settings.empty()) continue;  // for the time that they take
-            INFO(text_of_local(c));
+            INFO("distances through " << text_of_local(c));
             require_expected(judge.scene(), judge.judge([&] { return compose_by_distance(c); }));
         }
     }
