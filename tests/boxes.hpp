@@ -31,6 +31,14 @@ std::vector<aabb::index_pair> found_by(Search& search, std::span<const aabb::box
     return sorted(pairs);
 }
 
+/// The ids of the boxes that differ from those of the previous frame, twice, descending and with one that may not.
+inline std::vector<std::uint32_t> ids_of_moved(std::span<const aabb::box> before, std::span<const aabb::box> boxes) {
+    std::vector<std::uint32_t> ids;
+    for (auto id = static_cast<std::uint32_t>(std::min(before.size(), boxes.size())); id-- > 0;)
+        if (boxes[id] != before[id] || id == 3) ids.insert(ids.end(), {id, id});
+    return ids;
+}
+
 /// With integer coordinates, so that many boxes touch.
 inline aabb::box lattice_box(std::mt19937& random, std::uint32_t side, std::uint32_t extent) {
     aabb::box b{};

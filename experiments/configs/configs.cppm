@@ -29,10 +29,11 @@ enum class query_kind : std::uint8_t {
 };
 inline constexpr std::array<std::string_view, 3> query_names{"pairs", "count", "first"};
 
-/// How the queries of a mesh scene are timed.
+/// How the queries of a scene are timed.
 struct query_settings {
     query_kind kind = query_kind::pairs;
-    bool cold = false;  ///< the processor's caches hold other data before each query
+    bool cold = false;        ///< the processor's caches hold other data before each query
+    bool says_moved = false;  ///< each method is given the ids of the boxes that have moved, outside its time
 
     friend bool operator==(const query_settings&, const query_settings&) = default;
 };

@@ -114,8 +114,9 @@ std::size_t read_word(const document& doc, const char* key, const node& value,
     return static_cast<std::size_t>(word - known.begin());
 }
 
-/// Reads the query of the narrow phase (`ask`) and whether caches are cold before it. Only scenes of meshes support
-/// other values than the defaults, so the scenes must have been read.
+/// Reads the query of the narrow phase (`ask`), whether caches are cold before it, and what a method knows of motion.
+/// Only scenes of meshes support other values of the first two than the defaults, and only those of boxes of the last,
+/// so the scenes must have been read.
 void read_query(const document& doc, experiment& e) {
     const node* measure = doc.root().find("measure");
     if (!measure) return;
@@ -134,9 +135,17 @@ void read_query(const document& doc, experiment& e) {
         e.query.cold = read_word(doc, "caches", *caches, states) == 1;  // "cold"
         if (e.query.cold) require_meshes("caches", *caches);
     }
+    constexpr std::array<std::string_view, 2> sources{"compared", "given"};
+    if (const node* motion = measure->find("motion")) {
+        e.query.says_moved = read_word(doc, "motion", *motion, sources) == 1;  // "given"
+        const auto meshes = std::ranges::find_if(e.scenes, has_meshes);
+        if (e.query.says_moved && meshes != e.scenes.end())
+            doc.fail(motion->line, "motion = \"given\" is for scenes of boxes, and " + meshes->kind + " has meshes");
+    }
     if (e.query.kind == query_kind::first) e.notes.emplace_back("query: any one contact of each frame");
     if (e.query.kind == query_kind::count) e.notes.emplace_back("query: the number of contacts of each frame");
     if (e.query.cold) e.notes.emplace_back("caches: cold before each query");
+    if (e.query.says_moved) e.notes.emplace_back("motion: the ids of boxes that move are given");
 }
 
 /// Reads `processes`, the fresh processes among which the repeats are divided. More processes than repeats are an
@@ -177,7 +186,7 @@ void read_measure(const document& doc, experiment_size size, experiment& e) {
     const node* measure = doc.root().find("measure");
     if (!measure) return;
     doc.require_table("measure", *measure, " of [measure]",
-                      {"repeats", "processes", "patience", "ask", "caches", "metrics", "quick"});
+                      {"repeats", "processes", "patience", "ask", "caches", "motion", "metrics", "quick"});
     const node* repeats = measure->find("repeats");
     if (repeats && !quick) e.repeats = doc.integer_of("repeats", *repeats, 1);
     if (e.repeats > most_repeats) doc.fail(repeats->line, "repeats must be at most " + std::to_string(most_repeats));
@@ -257,7 +266,7 @@ std::string hash_of(const experiment& e) {
     for (const scene_choice& scene : e.scenes) text += "\n" + scene.kind + " " + parameters_text(scene);
     if (e.query != query_settings{})
         text += "\n" + std::string(query_names[static_cast<std::size_t>(e.query.kind)]) +
-                (e.query.cold ? " cold" : " warm");
+                (e.query.cold ? " cold" : " warm") + (e.query.says_moved ? " given" : "");
     return aabb::hash_of_text(text + "\n" + e.content_digest);
 }
 

@@ -60,6 +60,7 @@ elapsed time_query(stage_runner& runner, const query_settings& query, std::strin
 /// @param settings what to run and record, and a function to call after each frame
 observation observe(scene_frames& scene, const candidate& tested, const protocol& settings) {
     observation result;
+    if (settings.query.says_moved) scene.compare_boxes();
     std::optional<stage_runner> runner;
     stopwatch building;
     runner.emplace(tested, scene, settings.counted);  // creates the stages, and builds their trees

@@ -20,6 +20,7 @@ scene_frames::scene_frames(const scene_choice& choice) {
 bool scene_frames::next() {
     if (!(meshes_ ? meshes_->next(poses_) : box_scene_->next(boxes_))) return false;
     if (box_scene_) note_changes(box_scene_->present());
+    if (compares_) note_motion();
     ++frames_run_;
     return true;
 }
@@ -56,6 +57,13 @@ void scene_frames::note_changes(std::span<const std::uint8_t> present) {
     }
 }
 
+void scene_frames::note_motion() {
+    moved_.clear();
+    for (std::uint32_t object = 0; object < boxes_.size(); ++object)
+        if (object >= previous_.size() || boxes_[object] != previous_[object]) moved_.push_back(object);
+    previous_ = boxes_;
+}
+
 stage_runner::stage_runner(const candidate& tested, const scene_frames& scene, aabb::instrumentation counted)
     : stage_runner(stages{tested.make_global(counted), scene.meshes() ? tested.make_local(counted) : nullptr}, scene,
                    counted) {}
@@ -80,6 +88,7 @@ void stage_runner::update() try {
     if (pipeline_) return pipeline_->update(scene_.poses());
     for (const std::uint32_t object : scene_.departures()) stages_.global->remove(object);
     stages_.global->insert_all(scene_.arrivals());
+    if (const auto moved = scene_.moved()) stages_.global->moved(*moved);
     stages_.global->update(scene_.boxes());
 } catch (const aabb::input_error& error) {
     scene_.rethrow(error);

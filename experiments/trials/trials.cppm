@@ -96,9 +96,16 @@ public:
     /// Objects of a scene of boxes that appear in this frame, and objects that disappear in it.
     [[nodiscard]] std::span<const std::uint32_t> arrivals() const { return arrivals_; }
     [[nodiscard]] std::span<const std::uint32_t> departures() const { return departures_; }
+    /// From now on compares boxes with those of the previous frame.
+    void compare_boxes() { compares_ = true; }
+    /// The ids of those that differ; nullopt if boxes are not compared.
+    [[nodiscard]] std::optional<std::span<const std::uint32_t>> moved() const {
+        return compares_ ? std::optional<std::span<const std::uint32_t>>(moved_) : std::nullopt;
+    }
 
 private:
     void note_changes(std::span<const std::uint8_t> present);
+    void note_motion();
 
     std::unique_ptr<aabb::box_scene> box_scene_;
     std::unique_ptr<aabb::mesh_scene> meshes_;
@@ -109,6 +116,9 @@ private:
     std::vector<aabb::pose> poses_;
     std::vector<std::uint8_t> present_;  // by object
     std::vector<std::uint32_t> arrivals_, departures_;
+    bool compares_ = false;
+    std::vector<aabb::box> previous_;
+    std::vector<std::uint32_t> moved_;
 };
 
 struct stages {

@@ -40,6 +40,8 @@ public:
         state_ = state::taken;
     }
 
+    [[nodiscard]] bool is_taken() const noexcept { return state_ == state::taken; }
+
     /// Must be called before a search.
     /// @throws input_error if the last update failed or there was none
     void require_taken() const {

@@ -48,12 +48,18 @@ public:
         });
     }
 
+    void moved(std::span<const std::uint32_t> ids) override { objects_.moved(ids); }
+
     void update(std::span<const box> boxes) override {
+        // What moved is known of the search's boxes only if it has those of the previous frame.
+        const bool has_previous = frame_.is_taken() && searches_;
+        if (!has_previous) objects_.forget_moved();
         frame_.begin();
         require_ieee_arithmetic();
         objects_.require_boxes_for_all(boxes.size());
         boxes_ = boxes;
         joins_ = wants_join_ && filter_.has_sets();
+        const auto moved = objects_.moved();
         frame_.change([&] {
             objects_.settle();
             for (const std::uint32_t id : departures_)
@@ -62,10 +68,12 @@ public:
             if (may_withhold_ && !joins_ && (filter_.resting() > 0 || indexed_ > 0)) sort_out_resting();
         });
         searches_ = !joins_ && (searched_ > 0 || indexed_ == 0);
-        if (searches_)
+        if (searches_) {
+            if (moved) search_->moved(*moved);
             search_->update(boxes);
-        else
+        } else {
             require_valid(boxes);
+        }
         if (joins_) frame_.change([&] { join_.update(boxes, [this](std::uint32_t id) { return set_of(id); }); });
         frame_.taken();
     }

@@ -190,9 +190,13 @@ public:
     void insert_all(std::span<const std::uint32_t> ids) { objects_.insert_all(ids); }
     void remove(std::uint32_t id) { objects_.remove(id); }
 
+    /// As `global_stage::moved`.
+    void moved(std::span<const std::uint32_t> ids) noexcept { objects_.moved(ids); }
+
     /// Passes the boxes of a frame, indexed by object id, to the partition's own search, which also validates them.
     /// After an exception the frame does not count as taken, so that `search` rejects it.
     void update(std::span<const box> boxes) {
+        if (!frame_.is_taken()) objects_.forget_moved();  // since a frame that the search has not taken
         frame_.begin();
         require_ieee_arithmetic();
         objects_.require_boxes_for_all(boxes.size());

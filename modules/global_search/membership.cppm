@@ -5,7 +5,8 @@ import aabb.std;
 
 export namespace aabb {
 
-/// The set of present objects, with the arrivals and departures since the previous frame. Ids are stable.
+/// The set of present objects, with the arrivals and departures since the previous frame and, if the caller says so,
+/// the objects that have moved. Ids are stable.
 class membership {
 public:
     /// Makes an object present from the next frame on. It is `arriving` until that frame, then `known`.
@@ -19,6 +20,7 @@ public:
         // An object that is removed and inserted again between two frames counts as known.
         const bool arrives = state_[id] == state::absent;
         arrivals_ += arrives;
+        any_returns_ |= !arrives;
         state_[id] = arrives ? state::arriving : state::known;
         ++size_;
     }
@@ -53,6 +55,15 @@ public:
         }
     }
 
+    /// As `global_stage::moved`: the ids must exist until the frame is taken.
+    void moved(std::span<const std::uint32_t> ids) noexcept { moved_ = ids; }
+    /// The objects among which are all that have moved since the previous frame, in any order; nullopt if unknown.
+    /// Arrivals need not be among them.
+    [[nodiscard]] std::optional<std::span<const std::uint32_t>> moved() const noexcept {
+        return any_returns_ ? std::nullopt : moved_;  // an object that was removed and inserted need not be among them
+    }
+    void forget_moved() noexcept { moved_.reset(); }
+
     [[nodiscard]] std::size_t size() const noexcept { return size_; }
     [[nodiscard]] inline bool contains(std::uint32_t id) const noexcept {
         return id < state_.size() && (state_[id] == state::arriving || state_[id] == state::known);
@@ -69,24 +80,27 @@ public:
             if (state_[id] == state::arriving) take(static_cast<std::uint32_t>(id));
     }
 
-    /// Rejects a frame in which a present object has no box, or which has boxes although `insert` was never called: a
-    /// program without that call would silently get no pairs.
+    /// Rejects a frame in which an object that is present or has moved has no box, or which has boxes although `insert`
+    /// was never called: a program without that call would silently get no pairs.
     /// @param boxes number of boxes in the frame, which are indexed by object id
     void require_boxes_for_all(std::size_t boxes) const {
         if (state_.empty() && boxes > 0)
             throw input_error("no object was inserted; call insert(id) for each box first");
-        for (std::size_t id = boxes; id < state_.size(); ++id)
-            if (contains(static_cast<std::uint32_t>(id)))
-                throw input_error("object " + std::to_string(id) + " is present, but the frame has only " +
-                                  std::to_string(boxes) + " boxes");
+        for (std::uint32_t id = static_cast<std::uint32_t>(std::min(boxes, state_.size())); id < state_.size(); ++id)
+            if (contains(id)) reject_without_box(id, "is present", boxes);
+        if (!moved_) return;
+        for (const std::uint32_t id : *moved_)
+            if (id >= boxes) reject_without_box(id, "has moved", boxes);
     }
 
-    /// Marks arrivals and departures as processed.
+    /// Marks arrivals, departures and motion as processed.
     void settle() {
         if (any_departures_) std::ranges::replace(state_, state::leaving, state::absent);
         if (arrivals_ > 0) std::ranges::replace(state_, state::arriving, state::known);
         any_departures_ = false;
+        any_returns_ = false;
         arrivals_ = 0;
+        forget_moved();
     }
 
     [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(state_); }
@@ -98,11 +112,17 @@ private:
     [[noreturn]] static void reject(std::uint32_t id, const char* why) {
         throw input_error("object " + std::to_string(id) + why);
     }
+    [[noreturn]] static void reject_without_box(std::uint32_t id, const std::string& what, std::size_t boxes) {
+        throw input_error("object " + std::to_string(id) + " " + what + ", but the frame has only " +
+                          std::to_string(boxes) + " boxes");
+    }
 
     std::vector<state> state_;  // by id
     std::size_t size_ = 0;
     std::size_t arrivals_ = 0;
     bool any_departures_ = false;
+    bool any_returns_ = false;  // an object was removed and inserted again since the previous frame
+    std::optional<std::span<const std::uint32_t>> moved_;
 };
 
 }  // namespace aabb

@@ -93,6 +93,11 @@ public:
     void insert(std::uint32_t id) { search_.insert(id); }
     void remove(std::uint32_t id) { search_.remove(id); }
 
+    /// As `global_stage::moved`: no other objects have moved.
+    void moved(std::span<const std::uint32_t> ids) {
+        if constexpr (requires { search_.moved(ids); }) search_.moved(ids);
+    }
+
     /// Processes a frame: returns every pair of present objects whose boxes overlap once, a < b, in unspecified order,
     /// valid until the next frame. Nothing is allocated once the buffers have grown to the scene.
     /// @param boxes by id, including absent objects; closed, so that touching counts as overlapping

@@ -27,6 +27,9 @@ public:
     void insert(std::uint32_t id) override { search_.insert(id); }
     void insert_all(std::span<const std::uint32_t> ids) override { search_.insert_all(ids); }
     void remove(std::uint32_t id) override { search_.remove(id); }
+    void moved(std::span<const std::uint32_t> ids) override {
+        if constexpr (requires { search_.moved(ids); }) search_.moved(ids);
+    }
     void update(std::span<const box> boxes) override { search_.update(boxes); }
     void search(std::vector<index_pair>& pairs) override { search_.search(pairs); }
     [[nodiscard]] work_counters counters() const override { return work_of(search_.counters()); }
@@ -79,6 +82,7 @@ public:
     [[nodiscard]] std::unique_ptr<scene_parts> divide(const mesh_scene& scene) { return stage_->divide(scene); }
     inline void insert(std::uint32_t id) { stage_->insert(id); }
     inline void remove(std::uint32_t id) { stage_->remove(id); }
+    inline void moved(std::span<const std::uint32_t> ids) { stage_->moved(ids); }
     inline void update(std::span<const box> boxes) { stage_->update(boxes); }
     inline void search(std::vector<index_pair>& pairs) { stage_->search(pairs); }
     [[nodiscard]] work_counters counters() const { return stage_->counters(); }

@@ -51,6 +51,11 @@ public:
     }
     virtual void remove(std::uint32_t id) = 0;
 
+    /// Says that no other objects have moved, so that the next `update` need not compare all boxes: their boxes equal
+    /// those of the last `update` bit for bit, unless they were inserted since. The ids, in any order, must exist until
+    /// that `update`, for which alone this holds. It has no effect if the last `update` threw.
+    virtual void moved(std::span<const std::uint32_t> /*ids*/) {}
+
     /// Takes, sorts and partitions the boxes of a frame, indexed by id.
     /// @throws input_error on a box that is not finite or inverted, and on boxes if no object was ever inserted
     virtual void update(std::span<const box> boxes) = 0;

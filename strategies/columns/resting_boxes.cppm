@@ -88,7 +88,7 @@ public:
         const auto active = static_cast<double>(active_.size());
         const double ns_of_all = n * ns.search_box + static_cast<double>(pairs_.size()) * ns.search_pair;
         const double ns_to_look_up = std::max(active * ns.active_box, static_cast<double>(tests_) * ns.column_test);
-        const double ns_of_active = n * ns.watch_box + ns_to_look_up;
+        const double ns_of_active = static_cast<double>(compared_) * ns.watch_box + ns_to_look_up;
         const double ns_to_keep = n * 3 * ns.column_entry + static_cast<double>(pairs.size()) * ns.test_pair;
         gain_ += ns_of_all - ns_of_active;
         if (gain_ > ns_to_keep) backoff_ = 0;
@@ -151,11 +151,10 @@ private:
                        state::absent);  // one that left may have no box any more
         if (objects.any_departures() || objects.arrivals() > 0) take_objects(objects);
         states_.resize(boxes.size());
-        find_moved(boxes);
+        find_moved(boxes, objects);
         const std::size_t known = active_.size();
         std::size_t moving = 0;
         for (const std::uint32_t id : std::span(moved_).first(moved_count_)) {
-            boxes_[id] = boxes[id];
             // The others are validated when they are searched.
             if (states_[id] == state::absent && !is_valid(boxes[id])) require_valid(boxes);  // throws
             moving += states_[id] == state::active;
@@ -201,12 +200,30 @@ private:
         drop_active_pairs();
     }
 
-    void find_moved(std::span<const box> boxes) {
-        if (moved_.size() <= boxes.size()) moved_.resize(boxes.size() + 1);
+    /// Lists the boxes that differ from those of the previous frame, ascending by id, and takes them.
+    void find_moved(std::span<const box> boxes, const membership& objects) {
         moved_count_ = 0;
+        compared_ = objects.moved() ? objects.moved()->size() : boxes.size();
+        if (objects.moved()) {
+            find_moved_among(*objects.moved(), boxes);
+            objects.for_each_arrival([&](std::uint32_t id) { find_moved_among({&id, 1}, boxes); });
+            const auto moved = std::span(moved_).first(moved_count_);
+            if (!std::ranges::is_sorted(moved)) std::ranges::sort(moved);
+            return;
+        }
+        if (moved_.size() <= boxes.size()) moved_.resize(boxes.size() + 1);
         for (std::uint32_t id = 0; id < boxes.size(); ++id) {
             moved_[moved_count_] = id;
             moved_count_ += differ(boxes[id], boxes_[id]);
+        }
+        for (const std::uint32_t id : std::span(moved_).first(moved_count_)) boxes_[id] = boxes[id];
+    }
+    void find_moved_among(std::span<const std::uint32_t> ids, std::span<const box> boxes) {
+        if (moved_.size() < moved_count_ + ids.size()) moved_.resize(moved_count_ + ids.size());
+        for (const std::uint32_t id : ids) {
+            if (!differ(boxes[id], boxes_[id])) continue;
+            boxes_[id] = boxes[id];  // at once, since an id may be repeated
+            moved_[moved_count_++] = id;
         }
     }
 
@@ -251,6 +268,7 @@ private:
     std::vector<box> active_boxes_;      // of this frame
     std::vector<std::uint32_t> moved_;   // ids of boxes that differ from the previous frame's, ascending
     std::size_t moved_count_ = 0;
+    std::size_t compared_ = 0;        // boxes of this frame
     std::vector<box> indexed_boxes_;  // those that rested when the index was built
     std::vector<std::uint32_t> indexed_ids_;
     resting_index index_;

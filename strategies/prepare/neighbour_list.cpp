@@ -64,10 +64,12 @@ public:
         objects_.remove(id);
         search_->remove(id);
     }
+    void moved(std::span<const std::uint32_t> ids) override { objects_.moved(ids); }
 
     /// Finds the pairs of this frame by a search, or from a Verlet list: the pairs whose boxes, grown by a margin,
     /// overlapped earlier. `actions` chooses by what is kept (`state_`) and how boxes have moved since (`observation`).
     void update(std::span<const box> boxes) override {
+        if (!frame_.is_taken()) objects_.forget_moved();  // since a frame that was not taken
         frame_.begin();
         require_ieee_arithmetic();
         objects_.require_boxes_for_all(boxes.size());
@@ -76,6 +78,7 @@ public:
         if (std::exchange(is_list_pending_, false)) state_ = state::nothing;
         const bool any_arrivals = objects_.arrivals() > 0;
         const bool any_leave = objects_.any_departures();
+        moved_objects_ = objects_.moved();
         frame_.change([&] { objects_.settle(); });
         // Departures are reported only once, so they are applied now, even if this frame is rejected later.
         if (any_leave && keeps_pairs())
@@ -83,11 +86,11 @@ public:
         record_arrivals(any_arrivals);
         if (is_below_list_threshold()) {
             state_ = state::nothing;  // for so few boxes, searching is cheapest
-            search_->update(boxes);
+            search_boxes(boxes);
         } else {
             const observation seen = observe_motion(boxes, any_arrivals);
             switch (actions[static_cast<std::size_t>(state_)][static_cast<std::size_t>(seen)]) {
-                case action::search: search_->update(boxes); break;
+                case action::search: search_boxes(boxes); break;
                 case action::keep: start_list(boxes, list_after_sample(boxes)); break;
                 // Objects inserted since the boxes were kept have no valid kept box, so their motion is unknown.
                 case action::plan: plan(boxes, seen == observation::changed && age_ > 0 && !any_arrivals); break;
@@ -332,7 +335,14 @@ private:
             if (state_ != state::nothing) backoff_.begin(objects_.size());
             state_ = state::searching;
         }
+        search_boxes(boxes);
+    }
+
+    /// Gives the boxes to the search as they are and, if it has those of the previous frame, the objects that moved.
+    void search_boxes(std::span<const box> boxes) {
+        if (moved_objects_ && frames_searched_ == frames_) search_->moved(*moved_objects_);
         search_->update(boxes);
+        frames_searched_ = frames_ + 1;
     }
 
     /// Starts a list: gives the boxes, grown by the margin, to the search; the pairs that it finds become the list.
@@ -443,8 +453,10 @@ private:
     list_estimate estimate_;
     list_backoff backoff_;
     bool awaits_first_list_ = false;
-    std::uint32_t ids_drawn_ = 0;  // see `draw_id`
-    std::size_t frames_ = 0;       // number of earlier frames
+    std::uint32_t ids_drawn_ = 0;      // see `draw_id`
+    std::size_t frames_ = 0;           // number of earlier frames
+    std::size_t frames_searched_ = 0;  // number of frames up to the last one that was searched as it was
+    std::optional<std::span<const std::uint32_t>> moved_objects_;  // since the previous frame, if known
     std::size_t expected_ = std::numeric_limits<std::size_t>::max();
     std::size_t since_arrival_ = 0;  // number of frames
     std::size_t between_arrivals_ = std::numeric_limits<std::size_t>::max();

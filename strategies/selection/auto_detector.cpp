@@ -79,6 +79,11 @@ void auto_detector::remove(std::uint32_t object) {
     meshes_ ? meshes_->stages.remove(object) : global_->remove(object);
 }
 
+void auto_detector::moved(std::span<const std::uint32_t> objects) {
+    if (meshes_) throw input_error("this detector is for meshes: their poses say which of them move");
+    global_->moved(objects);
+}
+
 std::span<const index_pair> auto_detector::pairs(std::span<const box> boxes) {
     if (meshes_) throw input_error("this detector is for meshes: call contacts with their poses");
     global_->update(boxes);

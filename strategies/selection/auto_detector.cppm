@@ -38,6 +38,10 @@ public:
     void insert(std::uint32_t object);
     void remove(std::uint32_t object);
 
+    /// As `global_stage::moved`: no other boxes have moved.
+    /// @throws input_error if objects are meshes
+    void moved(std::span<const std::uint32_t> objects);
+
     /// The overlapping pairs of a frame of boxes, as in `detector`.
     /// @throws input_error likewise, and if objects are meshes
     [[nodiscard]] std::span<const index_pair> pairs(std::span<const box> boxes);

@@ -194,6 +194,18 @@ TEST_CASE("The keys ask and caches are checked and part of the hash") {
             rejection_of(measure + line + "\n").ends_with(line + " is for scenes of meshes, and brownian has none"));
 }
 
+TEST_CASE("The key motion is checked and part of the hash") {
+    REQUIRE(parsed(measure + "motion = \"given\"\n").query == aabblab::query_settings{.says_moved = true});
+    REQUIRE(parsed(measure + "motion = \"given\"\n").notes.size() == 1);
+    const std::string plain = aabblab::hash_of(parsed(measure));
+    REQUIRE(aabblab::hash_of(parsed(measure + "motion = \"compared\"\n")) == plain);
+    REQUIRE(aabblab::hash_of(parsed(measure + "motion = \"given\"\n")) != plain);
+    REQUIRE(rejection_of(measure + "motion = \"gvien\"\n").ends_with("unknown motion 'gvien'; did you mean 'given'?"));
+    REQUIRE(rejection_of("name = \"m\"\n[[scene]]\nkind = \"mesh_pair\"\nmeshes = [\"icosphere:triangles=80\"]\n"
+                         "[measure]\nmotion = \"given\"\n")
+                .ends_with(":6: motion = \"given\" is for scenes of boxes, and mesh_pair has meshes"));
+}
+
 TEST_CASE_METHOD(in_folder, "A changed mesh file changes the hash") {
     const auto hash_with = [&](const std::string& vertex) {
         const std::string file = folder.write("one.off", "OFF\n4 1 0\n0 0 0\n1 0 0\n0 1 0\n" + vertex + "\n3 0 1 3\n");

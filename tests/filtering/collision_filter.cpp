@@ -408,6 +408,30 @@ TEST_CASE("a join ends once searching both sets costs less, and begins again") {
     CHECK(joins[309]);
 }
 
+TEST_CASE("what moved while two sets were joined is searched again") {
+    std::vector<box> boxes, before;
+    for (int id = 0; id < 600; ++id) {
+        const auto low = static_cast<float>(1000 * (id % 2) + id % 7);
+        boxes.push_back({{low, low, low}, {low + 4, low + 4, low + 4}});
+    }
+    collision_filter filter;
+    const auto stage = filtered(global_of({}), filter);
+    insert_all(*stage, 600);
+    for (int frame = 0; frame < 16; ++frame) {
+        const bool has_sets = 5 <= frame && frame < 12;
+        for (std::uint32_t id = 0; id < 600; ++id)
+            filter.set(id, {.set = !has_sets ? object_set::none : id % 2 == 0 ? object_set::a : object_set::b});
+        if (frame == 9) boxes[0] = moved(boxes[0], {500, 0, 0});
+        const std::vector<std::uint32_t> said = ids_of_moved(before, boxes);
+        stage->moved(said);
+        before = boxes;
+        std::vector<index_pair> expected = overlapping(boxes);
+        std::erase_if(expected, [&](index_pair p) { return has_sets && p.a % 2 == p.b % 2; });
+        CHECK(found_by(*stage, boxes) == expected);
+        if (frame == 9) CHECK(has_plan(*stage, plan_kind::set_join));
+    }
+}
+
 TEST_CASE("small sets without pairs of their own are searched together") {
     collision_filter filter;
     for (std::uint32_t id = 0; id < 200; ++id) filter.set(id, {.set = id < 100 ? object_set::a : object_set::b});

@@ -146,6 +146,19 @@ inline aabb::cost_model costs_for_indices() {
     return costs;
 }
 
+/// Whether a search rejects a frame with an inverted box.
+template <class Search>
+bool rejects_inverted(Search& search, std::span<const aabb::box> boxes) {
+    std::vector<aabb::box> inverted(boxes.begin(), boxes.end());
+    inverted.front() = {{1, 1, 1}, {0, 0, 0}};
+    try {
+        search.update(inverted);
+    } catch (const aabb::input_error&) {
+        return true;
+    }
+    return false;
+}
+
 /// The first frame in which a search does not find what is kept; -1 if it always does.
 /// @param filter that of the search, which is told what the scene says
 /// @param after_frame called after each frame
@@ -153,6 +166,7 @@ template <class Search, class Call>
 int first_wrong_frame(Search& search, aabb::collision_filter& filter, const filtered_scene& scene, Call after_frame) {
     std::vector<bool> present;
     bool any_yet = false;  // before the first object comes there are no boxes
+    std::span<const aabb::box> before;
     for (std::size_t f = 0; f < scene.frames.size(); ++f) {
         const filtered_scene::frame& frame = scene.frames[f];
         if (f == 0 || scene.filter_changes) frame.filter.tell(filter);
@@ -163,6 +177,13 @@ int first_wrong_frame(Search& search, aabb::collision_filter& filter, const filt
         }
         any_yet |= !frame.toggled.empty();
         const auto boxes = std::span(frame.boxes).first(any_yet ? frame.boxes.size() : 0);
+        const bool is_rejected_first = f % 5 == 3 && any_yet;
+        if (is_rejected_first && !rejects_inverted(search, boxes)) return static_cast<int>(f);
+        // Most frames say what has moved. After a rejected one that has no effect.
+        std::vector<std::uint32_t> said;
+        if (!is_rejected_first) said = ids_of_moved(before, boxes);
+        if (f % 3 > 0) search.moved(said);
+        before = boxes;
         if (found_by(search, boxes) != frame.pairs) return static_cast<int>(f);
         after_frame();
     }

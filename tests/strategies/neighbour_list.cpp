@@ -964,3 +964,24 @@ TEST_CASE("no list is planned beyond the frames left, in which new memory must b
     CHECK(planned({.frames_left = 5, .in_new_memory = true}).frames == 1);
     CHECK(planned({.in_new_memory = true}).cost == without_end.cost);
 }
+
+TEST_CASE("what moved is searched again after lists, also where most boxes rest") {
+    for (const float drift : {0.01F, 0.02F, 0.04F, 0.08F}) {
+        const moving_cubes cubes(600, 5);
+        std::vector<box> before;
+        int lists = 0;
+        for (int frame = 0; frame < 160; ++frame) {
+            // A tenth drifts and then, for some frames, moves too far for any list.
+            const float far =
+                drift * static_cast<float>(frame) + (frame % 80 < 60 ? 0 : 2 * static_cast<float>(frame % 7));
+            const std::vector<box> boxes = cubes.at([&](std::size_t i) { return i % 10 == 0 ? far : 0; });
+            const std::vector<std::uint32_t> said = ids_of_moved(before, boxes);
+            cubes.stage->moved(said);
+            before = boxes;
+            CHECK(found_by(*cubes.stage, boxes) == overlapping(boxes));
+            lists += keeps_list(*cubes.stage);
+        }
+        CHECK(lists > 20);
+        CHECK(lists < 150);
+    }
+}

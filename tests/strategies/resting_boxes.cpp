@@ -64,7 +64,7 @@ TEST_CASE("boxes at rest are found with any others, in any order of motion, rest
             for (int k = 0; k < 3; ++k) b.min[k] += shift, b.max[k] += shift;
             return b;
         };
-        std::vector<box> boxes(n);
+        std::vector<box> boxes(n), before;
         std::vector<bool> present(n, false);
         for (std::uint32_t id = 0; id < n; ++id) {
             boxes[id] = any();
@@ -84,12 +84,12 @@ TEST_CASE("boxes at rest are found with any others, in any order of motion, rest
                 present[id] ? search.remove(id) : search.insert(id);
                 present[id] = !present[id];
             }
+            bool is_rejected = false;
             if (*rc::gen::inRange(0, 12) == 0) {
                 std::vector<box> bad = boxes;
                 const std::uint32_t id = random() % n;
                 std::swap(bad[id].min[0], bad[id].max[0]);
                 bad[id].min[0] += 1;
-                bool is_rejected = false;
                 try {
                     search.update(bad);
                 } catch (const input_error&) {
@@ -97,6 +97,11 @@ TEST_CASE("boxes at rest are found with any others, in any order of motion, rest
                 }
                 RC_ASSERT(is_rejected);
             }
+            // After a rejected frame, what is said has no effect.
+            std::vector<std::uint32_t> said;
+            if (!is_rejected) said = ids_of_moved(before, boxes);
+            if (*rc::gen::arbitrary<bool>()) search.moved(said);
+            before = boxes;
             const auto expected = overlapping(boxes, present);
             RC_ASSERT(found_by(search, boxes) == expected);
             std::vector<index_pair> again;
@@ -157,6 +162,24 @@ TEST_CASE("no boxes are tested while all rest, and few once one moves, leaves or
         CHECK(tests() < full / 100);
         boxes.pop_back();
     }
+}
+
+TEST_CASE("boxes are not compared where the caller says which of them have moved") {
+    std::vector<box> boxes = cubes(3000, {30, 30, 30});
+    search_by_columns search(boxes.size());
+    for (int frame = 0; frame < 3; ++frame) static_cast<void>(result_of(search, boxes));
+    REQUIRE(resting_and_active(search)[0] == 3000);
+    const std::vector<index_pair> pairs = overlapping(boxes);
+    boxes[7] = moved(boxes[7], {100, 100, 100});
+    search.moved({});  // which is not so
+    CHECK(found_by(search, boxes) == pairs);
+    const std::array<std::uint32_t, 1> seven{7}, beyond{3000};
+    search.moved(seven);
+    CHECK(found_by(search, boxes) == overlapping(boxes));
+    boxes[8] = moved(boxes[8], {100, 100, 100});
+    CHECK(found_by(search, boxes) == overlapping(boxes));
+    search.moved(beyond);
+    CHECK_REFUSED(search.update(boxes), "object 3000 has moved, but the frame has only 3000 boxes");
 }
 
 TEST_CASE("boxes that have come to rest are kept again once that is worth its cost") {

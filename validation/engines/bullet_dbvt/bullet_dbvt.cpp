@@ -21,12 +21,15 @@ public:
     }
 
 private:
+    [[nodiscard]] bool can_take_moved() const override { return true; }
+
     /// Updates the tree's leaves, one per present object. Bullet moves a leaf only if it no longer contains its
     /// object's box. The new leaf is enlarged by a margin, so that it stays valid for some frames, unless the box has
     /// jumped out of the old one. `optimizeIncremental` reinserts one leaf per frame, which keeps the tree balanced.
     void take_boxes(std::span<const box> boxes, std::span<const std::uint32_t> ids) override {
         drop_absent(leaves_, [&](btDbvtNode* leaf) { tree_.remove(leaf); });
-        boxes_.assign(boxes.begin(), boxes.end());
+        boxes_.resize(boxes.size());
+        for (const std::uint32_t id : ids) boxes_[id] = boxes[id];
         if (leaves_.size() < boxes.size()) leaves_.resize(boxes.size());
         const btScalar margin = margin_for(ids);
         for (const std::uint32_t id : ids) {

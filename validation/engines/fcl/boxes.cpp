@@ -39,20 +39,26 @@ public:
     }
 
 private:
+    [[nodiscard]] bool can_take_moved() const override { return true; }
+
     /// Updates FCL's tree (`manager_`) to the boxes of the present objects: removes those that left, and adds new ones.
     void take_boxes(std::span<const box> boxes, std::span<const std::uint32_t> ids) override {
         drop_absent(objects_, [&](const auto& object) { manager_.unregisterObject(object.get()); });
         if (!ids.empty() && objects_.size() <= ids.back()) objects_.resize(std::size_t{ids.back()} + 1);
-        std::vector<fcl::CollisionObjectd*> arrivals;
+        std::vector<fcl::CollisionObjectd*> arrivals, updated;
         for (const std::uint32_t id : ids) {
             if (!objects_[id]) {
                 objects_[id] = std::make_unique<fcl_object>(id);
                 arrivals.push_back(objects_[id].get());
             }
             objects_[id]->set_bounds(boxes[id]);
+            updated.push_back(objects_[id].get());
         }
         manager_.registerObjects(arrivals);
-        manager_.update();
+        if (updated.size() < manager_.size())
+            manager_.update(updated);
+        else
+            manager_.update();
     }
 
     void find_pairs(std::vector<index_pair>& pairs) override {
